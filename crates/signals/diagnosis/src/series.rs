@@ -265,6 +265,8 @@ fn highest_alone(families: &mut [SeriesFamily]) {
 /// Least records before and from the onset on: a mean, and a line, need one more for their scatter.
 const LEAST_BEFORE: usize = 2;
 const LEAST_AFTER: usize = 3;
+/// Twice the logarithm of a Bayes factor from which on evidence is very strong.
+const VERY_STRONG: f64 = 10.0;
 /// Scatter that heights have at least [dB], so that equal ones have one.
 const LEAST_SCATTER_DB: f64 = 0.1;
 /// Probability on either side of the interval.
@@ -284,15 +286,18 @@ fn onset(heights_db: &[Option<f64>], sound: usize) -> Option<Onset> {
         .map(|place| (place, likelihood(&points[..place], 1) + likelihood(&points[place..], 2)))
         .collect();
     let best = *scored.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    // One constant or one line over all records that says as much needs no change (Bayesian information criterion;
-    // levels, slopes, scatters and the place are its parameters).
+    // A change needs very strong evidence against one constant or one line over all records: Bayes' criterion, whose
+    // parameters are levels, slopes, scatters and the place (R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995)
+    // 773–795, section 3.2).
     let criterion = |parts: &[(&[(f64, f64)], usize)], parameters: f64| {
-        let misfit = |(part, of): &(&[(f64, f64)], usize)| part.len() as f64 * (misfit(part, *of) / part.len() as f64).ln();
+        let misfit = |(part, of): &(&[(f64, f64)], usize)| {
+            part.len() as f64 * (misfit(part, *of) / part.len() as f64).ln()
+        };
         parts.iter().map(misfit).sum::<f64>() + parameters * (points.len() as f64).ln()
     };
     let (before, behind) = points.split_at(best.0);
     let unchanged = criterion(&[(&points, 1)], 2.0).min(criterion(&[(&points, 2)], 3.0));
-    if unchanged <= criterion(&[(before, 1), (behind, 2)], 6.0) {
+    if unchanged <= VERY_STRONG + criterion(&[(before, 1), (behind, 2)], 6.0) {
         return None;
     }
     let weights: Vec<f64> = scored.iter().map(|(_, score)| (score - best.1).exp()).collect();
@@ -474,11 +479,11 @@ mod tests {
         }
         let found = onset(&heights(&values), 0).unwrap();
         assert_eq!((found.record, found.low, found.high), (7, 7, 7));
-        // A faint one is less certain, and one among the sound records is excluded.
-        values.iter_mut().enumerate().skip(6).for_each(|(at, x)| *x = 5.0 + scatter[at] + 0.8);
-        let faint = onset(&heights(&values), 0).unwrap();
-        assert!(faint.high > faint.low, "{faint:?}");
+        // One among the sound records is excluded, and a slow one is less certain.
         assert!(onset(&heights(&values), 8).is_none_or(|found| found.low > 8));
+        let slow = |at: usize| 5.0 + scatter[at % 12] + 0.4 * at.saturating_sub(12) as f64;
+        let slow = onset(&heights(&(0..24).map(slow).collect::<Vec<f64>>()), 0).unwrap();
+        assert!(slow.high > slow.low && (12..17).contains(&slow.record), "{slow:?}");
         // Records that were not analysed count in the numbering.
         let mut gaps = heights(&values);
         gaps[2] = None;

@@ -56,7 +56,8 @@ pub(crate) fn parted(mut recording: Recording) -> Result<Recording> {
     let values = channels.iter().map(Channel::read).collect::<Result<Vec<Vec<f64>>>>()?;
     let rows = values.iter().map(Vec::len).min().unwrap_or(0);
     let there = |at: usize| -> Vec<bool> { values[at][..rows].iter().map(|x| x.is_finite()).collect() };
-    let Some(clock) = (0..channels.len()).find(|n| is_clock(&channels[*n]) && there(*n).iter().all(|x| *x)) else {
+    let Some(clock) = (0..channels.len()).find(|n| is_clock(&channels[*n]) && there(*n).iter().all(|x| *x))
+    else {
         return Ok(recording);
     };
     // The rows of each clock, and the channels that have them.
@@ -104,8 +105,7 @@ pub(crate) fn parted(mut recording: Recording) -> Result<Recording> {
 /// Leaves out rows that stand twice, time and values, beside the clock `clock`; with a note.
 pub(crate) fn without_doubles(channels: &mut [Channel], clock: usize) -> Result<Option<String>> {
     let times = channels[clock].read()?;
-    let double: Vec<bool> =
-        (0..times.len()).map(|row| row > 0 && times[row] == times[row - 1]).collect();
+    let double: Vec<bool> = (0..times.len()).map(|row| row > 0 && times[row] == times[row - 1]).collect();
     let count = double.iter().filter(|is| **is).count();
     if count == 0 || 5 * count > times.len() {
         return Ok(None);
@@ -119,7 +119,10 @@ pub(crate) fn without_doubles(channels: &mut [Channel], clock: usize) -> Result<
         if (1..values.len().min(double.len())).any(|row| double[row] && !same(row)) {
             return Ok(None);
         }
-        kept.push((n, values.into_iter().zip(&double).filter(|(_, is)| !**is).map(|(x, _)| x).collect::<Vec<f64>>()));
+        kept.push((
+            n,
+            values.into_iter().zip(&double).filter(|(_, is)| !**is).map(|(x, _)| x).collect::<Vec<f64>>(),
+        ));
     }
     let first = double.iter().position(|is| *is).unwrap_or(0);
     kept.into_iter().for_each(|(n, values)| channels[n] = with(channels[n].clone(), values));

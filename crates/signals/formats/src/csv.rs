@@ -39,6 +39,8 @@ const SIGNS: [char; 2] = [',', '.'];
 const FEWEST_PLAIN: u64 = 4;
 /// One in this many fields of a column may be something other than a number.
 const FEW: u64 = 100;
+/// One in this many may be missing by chance.
+const RARELY: u64 = 1000;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
@@ -146,7 +148,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     let (census, rows, mut notes) = counted;
     let mut channels = Vec::new();
-    let sparse = census.iter().filter(|of| of.missing > rows / FEW && of.missing < rows).count();
+    let sparse = census.iter().filter(|of| of.missing > rows / RARELY && of.missing < rows).count();
     let origin_s = census.iter().find_map(|census| census.origin_s).unwrap_or(0);
     for (at, (name, mut census)) in names.into_iter().zip(census).enumerate() {
         let thousands = census.thousands();

@@ -277,7 +277,14 @@ impl Found {
         if flags & 0xff == OPAQUE {
             // It has no dimensions; the kind of object and its class follow its name.
             let (name, rest) = self.element(rest)?;
-            return Ok(Head { class: OPAQUE, complex: false, shape: vec![0], count: 0, name: text(&name), rest });
+            return Ok(Head {
+                class: OPAQUE,
+                complex: false,
+                shape: vec![0],
+                count: 0,
+                name: text(&name),
+                rest,
+            });
         }
         let (dimensions, rest) = self.element(rest)?;
         let (name, rest) = self.element(rest)?;

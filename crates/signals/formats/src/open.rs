@@ -82,7 +82,8 @@ impl Recording {
 /// At most ten of the notes on what is left out, and how many more there are.
 fn few(notes: Vec<String>) -> Vec<String> {
     const SHOWN: usize = 10;
-    let (out, mut rest): (Vec<String>, Vec<String>) = notes.into_iter().partition(|note| note.contains(LEFT_OUT));
+    let (out, mut rest): (Vec<String>, Vec<String>) =
+        notes.into_iter().partition(|note| note.contains(LEFT_OUT));
     let more = out.len().saturating_sub(SHOWN);
     rest.extend(out.into_iter().take(SHOWN));
     rest.extend((more > 0).then(|| format!("and {more} more are left out")));

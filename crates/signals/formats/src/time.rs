@@ -6,6 +6,7 @@
 
 mod packets;
 
+pub use crate::units::says_time;
 use crate::units::{self, DATES_S, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result, clock_columns};
 
@@ -204,7 +205,8 @@ fn own_clock<'a>(
         return Some((found, courses[found].as_ref()));
     }
     let step = |c: &Course| (c.last.1 - c.first.1) / (c.last.0 - c.first.0);
-    let differs = |n: &usize| courses[*n].as_ref().is_some_and(|c| (step(c) / step(all) - 1.0).abs() > SAME_RATE);
+    let differs =
+        |n: &usize| courses[*n].as_ref().is_some_and(|c| (step(c) / step(all) - 1.0).abs() > SAME_RATE);
     clocks().filter(|n| *n < of).find(differs).map(|n| (n, None))
 }
 
@@ -269,17 +271,6 @@ fn parent(name: &str) -> &str {
 /// The name without them.
 fn member(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
-}
-
-/// Whether a name is that of a time.
-pub fn says_time(name: &str) -> bool {
-    let word: String = member(name).chars().take_while(|c| c.is_alphabetic()).collect();
-    let word = word.to_lowercase();
-    const WORDS: [&str; 14] = [
-        "t", "ts", "epoch", "unix", "utc", "stamp", "clock", "uhrzeit", "zeit", "temps", "tiempo", "tempo", "datum",
-        "zeitstempel",
-    ];
-    word.starts_with("time") || matches!(word.as_str(), "date" | "datetime") || WORDS.contains(&word.as_str())
 }
 
 fn unit_of(channel: &Channel) -> Unit {

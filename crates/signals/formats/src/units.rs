@@ -272,13 +272,39 @@ pub(crate) fn odd_rate(name: &str, unit: Option<&str>, values: &[f64]) -> Option
         }
         [value] => Some(format!(
             "is {value}: as seconds that is {} Hz, as milliseconds {} Hz, as microseconds {} Hz; no rate follows",
-            rounded(1.0 / value), rounded(1e3 / value), rounded(1e6 / value)
+            rounded(1.0 / value),
+            rounded(1e3 / value),
+            rounded(1e6 / value)
         )),
         [first, ..] => {
             let all = values.iter().fold((*first, *first), |(low, high), x| (low.min(*x), high.max(*x)));
             Some(format!("has {} values, from {} to {}: no rate follows", values.len(), all.0, all.1))
         }
     }
+}
+
+/// Whether a name is that of a time.
+pub fn says_time(name: &str) -> bool {
+    let word: String =
+        name.rsplit('.').next().unwrap_or(name).chars().take_while(|c| c.is_alphabetic()).collect();
+    let word = word.to_lowercase();
+    const WORDS: [&str; 14] = [
+        "t",
+        "ts",
+        "epoch",
+        "unix",
+        "utc",
+        "stamp",
+        "clock",
+        "uhrzeit",
+        "zeit",
+        "temps",
+        "tiempo",
+        "tempo",
+        "datum",
+        "zeitstempel",
+    ];
+    word.starts_with("time") || matches!(word.as_str(), "date" | "datetime") || WORDS.contains(&word.as_str())
 }
 
 /// Seconds from 1970 to 1990, and to 2060.

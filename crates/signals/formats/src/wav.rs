@@ -89,8 +89,10 @@ fn joined(pieces: Vec<Recording>) -> Option<Recording> {
     let rest: Vec<Recording> = pieces.collect();
     if !rest.is_empty() {
         for (n, channel) in all.channels.iter_mut().enumerate() {
-            let parts: Vec<Channel> = rest.iter().filter_map(|piece| piece.channels.get(n).cloned()).collect();
-            let (len, first) = (channel.len + parts.iter().map(|part| part.len).sum::<u64>(), channel.clone());
+            let parts: Vec<Channel> =
+                rest.iter().filter_map(|piece| piece.channels.get(n).cloned()).collect();
+            let (len, first) =
+                (channel.len + parts.iter().map(|part| part.len).sum::<u64>(), channel.clone());
             let samples = Parts([vec![first], parts].concat());
             *channel = Channel::new(channel.name.clone(), len, samples).at_rate(channel.rate_hz);
         }

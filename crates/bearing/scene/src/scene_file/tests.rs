@@ -206,6 +206,12 @@ fn refuses_impossible_cage_adapter_defect_mesh_and_sampling() {
         ("(mesh: (size_mm: 1e-6))", "mesh.size_mm", "elements"),
         ("(mesh: (roller_facets: 99999))", "mesh.roller_facets", "1.9e10 elements"),
         ("(mesh: (outer_facets: 1000000, size_mm: 0.2))", "mesh.outer_facets", "5.0e7 elements"),
+        (
+            "(model: reduced(modes_khz: 30.0), bearing: \"NU 205\", housing: rigid(mass_kg: 5), film: None, \
+             mesh: (size_mm: 0.001, grading: (coarse_mm: 1.5)), output: (frames: None), defect: None)",
+            "mesh.size_mm",
+            "e6 elements",
+        ),
         ("(bearing: (inner_ring_thickness_mm: 82))", "bearing.inner_ring_thickness_mm", "no bore"),
         ("(solver: (duration_ms: 0.015))", "solver.duration_ms", "fewer than two samples"),
         ("(solver: (duration_ms: 6e4), output: (interval_us: 0.01))", "output.interval_us", "6.0e9 samples"),

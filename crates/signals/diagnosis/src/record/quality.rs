@@ -110,7 +110,9 @@ impl Quality {
     pub fn is_no_signal(&self) -> bool {
         match self.kind {
             Kind::Held | Kind::Dead => self.share > 0.5,
-            Kind::Clipped | Kind::FewLevels | Kind::SlewLimited | Kind::Drift | Kind::Hum | Kind::Aliased => false,
+            Kind::Clipped | Kind::FewLevels | Kind::SlewLimited | Kind::Drift | Kind::Hum | Kind::Aliased => {
+                false
+            }
             _ => true,
         }
     }

@@ -153,7 +153,8 @@ impl Dialect {
             let marked = ["#", "%", "//"].iter().any(|sign| text.starts_with(sign));
             marked && !NONE.iter().any(|none| text.to_lowercase().starts_with(none))
         };
-        let is_heading = || text.starts_with(|c: char| !c.is_numeric()) && self.heading.contains(&Some(digest(line)));
+        let is_heading =
+            || text.starts_with(|c: char| !c.is_numeric()) && self.heading.contains(&Some(digest(line)));
         self.is_empty(line) || is_comment() || is_heading()
     }
 

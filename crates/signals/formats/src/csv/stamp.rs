@@ -33,7 +33,9 @@ pub(crate) fn stamp(field: &str, day_first: bool) -> Option<(i64, i32)> {
     };
     let split = text.split_once(['T', ' ']);
     match split {
-        Some((date, time)) if date.matches(['-', '/', '.']).count() == 2 => civil(day(date, day_first)?, clock(time)?),
+        Some((date, time)) if date.matches(['-', '/', '.']).count() == 2 => {
+            civil(day(date, day_first)?, clock(time)?)
+        }
         _ if text.contains(':') => civil(Date::constant(1970, 1, 1), clock(&text)?),
         _ => civil(day(&text, day_first)?, Time::midnight()),
     }

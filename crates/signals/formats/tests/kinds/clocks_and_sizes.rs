@@ -7,7 +7,7 @@ use flate2::write::ZlibEncoder;
 use stribeck_formats::{Channel, Error, Recording};
 use stribeck_testing::{Scratch, assert_refused};
 
-use crate::{RATE_HZ, opened, signal, try_open};
+use crate::{RATE_HZ, notes, opened, signal, try_open};
 
 const COUNT: usize = 4096;
 
@@ -422,4 +422,165 @@ fn refuses_what_unpacks_to_more_than_memory_may_hold_before_it_is_unpacked() {
             other => panic!("{name}: {:?}", other.map(|found| found.names())),
         }
     }
+}
+
+/// Of two columns of time each is the clock of its channel; where the file does not say which, none is taken.
+#[test]
+fn issue_each_of_two_time_columns_is_the_clock_of_its_channel() {
+    let desk = Scratch::create("two-clocks");
+    let table = |head: &str, row: &dyn Fn(f64, f64, f64) -> String| {
+        let row = |n: usize| row(n as f64 / RATE_HZ, 0.5 * n as f64 / RATE_HZ, at(n).1);
+        opened(&desk, "a.csv", (head.to_owned() + "\n" + &rows(row)).as_bytes())
+    };
+    for found in [
+        table("time1_s,acc1,time2_s,acc2", &|a, b, x| format!("{a:.8},{x:.4},{b:.8},{x:.4}")),
+        table("time1_s,time2_s,acc1,acc2", &|a, b, x| format!("{a:.8},{b:.8},{x:.4},{x:.4}")),
+    ] {
+        let rate = |name: &str| found.channel(name).unwrap().rate_hz;
+        assert_eq!((rate("acc1"), rate("acc2")), (Some(RATE_HZ), Some(2.0 * RATE_HZ)));
+    }
+    let unsaid = table("time_s,t_s,acc,vel", &|a, b, x| format!("{a:.8},{b:.8},{x:.4},{x:.4}"));
+    assert_eq!(unsaid.channel("acc").unwrap().rate_hz, None);
+    notes(&unsaid, &["`time_s` and `t_s` count differently", "clock of `acc`"]);
+}
+
+/// A join of two tables, each with times of its own: the empty fields of one are the rows of the other.
+#[test]
+fn issue_rows_of_another_clock_are_no_samples() {
+    let desk = Scratch::create("joined-tables");
+    let mut all: Vec<(f64, String)> = rows(|n| format!("{:.4},", at(n).1))
+        .lines()
+        .enumerate()
+        .map(|(n, row)| (at(n).0, row.to_owned()))
+        .collect();
+    all.extend((0..300).map(|n| (3.3e-5 + n as f64 * 1e-3, ",1200".to_owned())));
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let text: String = all.iter().map(|(s, row)| format!("{s:.7},{row}\n")).collect();
+    let found = opened(&desk, "a.csv", ("time_s,acc_g,speed_rpm\n".to_owned() + &text).as_bytes());
+    let acc = sampled(&found, "acc_g");
+    assert_eq!(
+        acc.read().unwrap(),
+        rows(|n| format!("{:.4}", at(n).1)).lines().map(|x| x.parse().unwrap()).collect::<Vec<f64>>()
+    );
+    assert_eq!(found.channel("speed_rpm").unwrap().len, 300);
+    notes(&found, &["`acc_g` or `speed_rpm` in turn"]);
+}
+
+#[test]
+fn issue_rows_that_stand_twice_are_taken_once() {
+    let desk = Scratch::create("rows-twice");
+    let row = |n: usize| format!("{:.9},{:.6}", at(n).0, at(n).1);
+    let text = rows(|n| if n % 100 == 0 { format!("{}\n{}", row(n), row(n)) } else { row(n) });
+    let found = opened(&desk, "a.csv", ("time_s,acc_g\n".to_owned() + &text).as_bytes());
+    assert_eq!(
+        (sampled(&found, "acc_g").len, sampled(&found, "acc_g").rate_hz),
+        (COUNT as u64, Some(RATE_HZ))
+    );
+    notes(&found, &["rows stand twice: 41, the first of them row 2"]);
+}
+
+/// Comments between rows, and the names once more, are no samples.
+#[test]
+fn issue_comments_and_repeated_headings_are_no_rows() {
+    let desk = Scratch::create("asides");
+    for (head, columns) in [("time_s,acc_g\n", 2), ("acc_g\n", 1)] {
+        let row = |n: usize| match columns {
+            1 => format!("{:.4}", at(n).1),
+            _ => format!("{:.8},{:.4}", at(n).0, at(n).1),
+        };
+        for aside in ["# gain changed", "% page 2", head.trim()] {
+            let text = rows(|n| if n == 1000 { format!("{aside}\n{}", row(n)) } else { row(n) });
+            let found = opened(&desk, "a.csv", (head.to_owned() + &text).as_bytes());
+            let acc = found.channel("acc_g").unwrap().read().unwrap();
+            assert!(acc.len() == COUNT && acc.iter().all(|x| x.is_finite()), "{aside}: {}", acc.len());
+            notes(&found, &["line 1002", "no row"]);
+        }
+    }
+}
+
+/// At midnight the day goes on from 5 to 6 or from 12 to 13, whatever stands first.
+#[test]
+fn issue_day_and_month_are_decided_once_for_the_file() {
+    let desk = Scratch::create("midnight");
+    for (before, behind) in
+        [("05/11/2024", "06/11/2024"), ("12/11/2024", "13/11/2024"), ("11/05/2024", "11/06/2024")]
+    {
+        let stamp = |n: usize| match n as f64 / RATE_HZ - 0.1 {
+            s if s < 0.0 => format!("{before} 23:59:{:.7}", 60.0 + s),
+            s => format!("{behind} 00:00:{s:010.7}"),
+        };
+        let text = rows(|n| format!("{},{:.4}", stamp(n), at(n).1));
+        let found = opened(&desk, "a.csv", ("time,acc\n".to_owned() + &text).as_bytes());
+        assert_eq!(sampled(&found, "acc").len, COUNT as u64, "{before}");
+        assert!(found.notes.is_empty(), "{before}: {:?}", found.notes);
+    }
+}
+
+/// The name and the value of a rate that says none.
+#[test]
+fn issue_a_rate_that_is_odd_is_named_with_its_value() {
+    let desk = Scratch::create("odd-rates");
+    for (name, values, words) in [
+        (
+            "dt",
+            vec![78.125],
+            "`dt` is 78.125: as seconds that is 0.0128 Hz, as milliseconds 12.8 Hz, as microseconds 12800 Hz",
+        ),
+        ("fs", vec![f64::NAN], "`fs` is NaN"),
+        ("fs", vec![-12_800.0], "`fs` is -12800"),
+        ("fs", vec![12_800.0, 12_800.0, 6400.0], "`fs` has 3 values, from 6400 to 12800"),
+    ] {
+        let path = desk.join("a.npz");
+        let channels = [Channel::held("acc", (0..COUNT).map(signal).collect()), Channel::held(name, values)];
+        stribeck_formats::npz::write(&path, &channels, &[]).unwrap();
+        let found = Recording::open(&path).unwrap();
+        assert_eq!(found.channel("acc").unwrap().rate_hz, None, "{name}");
+        notes(&found, &[words]);
+    }
+}
+
+/// Samples in two pieces `data`, and a pipe.
+#[test]
+fn issue_pieces_of_a_wav_are_joined_and_pipes_are_refused() {
+    let desk = Scratch::create("wav-pieces");
+    let bytes = |from: i16| (from..from + 1000).flat_map(i16::to_le_bytes).collect::<Vec<u8>>();
+    let second = [b"data".to_vec(), 2000_u32.to_le_bytes().to_vec(), bytes(1000)].concat();
+    let found = opened(&desk, "a.wav", &wav(b"WAVE", 2000, &bytes(0), &second));
+    let samples = found.channels[0].read().unwrap();
+    assert!(
+        samples.len() == 2000 && samples.iter().enumerate().all(|(n, x)| *x == n as f64 / 32_768.0),
+        "{}",
+        samples.len()
+    );
+    notes(&found, &["2 pieces"]);
+    #[cfg(unix)]
+    assert_refused(Recording::open("/dev/null"), "a pipe or a device");
+}
+
+/// A timetable as MATLAB saves it: its name, what kind of object it is, and its class, without dimensions; then its
+/// contents, a variable without a name.
+#[test]
+fn issue_a_matlab_object_leaves_its_neighbours_whole() {
+    let desk = Scratch::create("matlab-object");
+    let path = desk.join("a.mat");
+    let acc = Channel::held("acc", (0..COUNT).map(signal).collect()).at_rate(Some(RATE_HZ));
+    stribeck_formats::mat5::write(&path, &[acc], &[]).unwrap();
+    let words = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    let variable = |body: Vec<u8>| [words(&[14, body.len() as u32]), body].concat();
+    let object = [
+        words(&[6, 8, 17, 0, 1, 1]),
+        b"T\0\0\0\0\0\0\0".to_vec(),
+        words(&[1, 4]),
+        b"MCOS\0\0\0\0".to_vec(),
+        words(&[1, 9]),
+        b"timetable\0\0\0\0\0\0\0".to_vec(),
+        words(&[14, 0]),
+    ];
+    let contents = [words(&[6, 8, 9, 0, 5, 8, 1, 8192, 1, 0, 2, 8192]), vec![7; 8192]];
+    let file = std::fs::read(&path).unwrap();
+    let found =
+        opened(&desk, "b.mat", &[file, variable(object.concat()), variable(contents.concat())].concat());
+    assert_eq!(sampled(&found, "acc").len, COUNT as u64);
+    assert!(found.channels.iter().all(|channel| !channel.name.is_empty()), "{}", found.names());
+    notes(&found, &["`T` is left out: it is a MATLAB object (timetable)"]);
 }

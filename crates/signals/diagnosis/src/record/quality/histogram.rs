@@ -36,9 +36,11 @@ impl Histogram {
         let mut bins = vec![0.0; BINS];
         sorted.iter().for_each(|x| bins[(((x - low) / width) as usize).min(BINS - 1)] += 1.0);
         let new = samples.iter().zip(samples.iter().skip(1)).filter(|(a, b)| a != b).map(|(_, b)| b + 0.0);
-        let mut begun: Vec<f64> = samples.iter().take(1).copied().chain(new).filter(|x| x.is_finite()).collect();
+        let mut begun: Vec<f64> =
+            samples.iter().take(1).copied().chain(new).filter(|x| x.is_finite()).collect();
         begun.sort_unstable_by(f64::total_cmp);
-        let mut frequent: Vec<(f64, usize)> = begun.chunk_by(|a, b| a == b).map(|all| (all[0], all.len())).collect();
+        let mut frequent: Vec<(f64, usize)> =
+            begun.chunk_by(|a, b| a == b).map(|all| (all[0], all.len())).collect();
         frequent.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         Some(Self { sorted, frequent, bins })
     }
@@ -66,7 +68,8 @@ impl Histogram {
         }
         let usual = self.frequent[MARKS].1;
         let (first, last) = (self.sorted[0], self.sorted[self.sorted.len() - 1]);
-        let samples = |of: f64| self.sorted.partition_point(|x| *x <= of) - self.sorted.partition_point(|x| *x < of);
+        let samples =
+            |of: f64| self.sorted.partition_point(|x| *x <= of) - self.sorted.partition_point(|x| *x < of);
         let is_mark = |&(value, runs): &(f64, usize)| {
             let others = self.sorted.len() - samples(value);
             let (lowest, highest) = match value {
@@ -79,7 +82,9 @@ impl Histogram {
             let at_end = value == first || value == last;
             let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
             let is_often = runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
-            runs > 1 && apart > FAR || is_often && (apart > 0.1 || !at_rail)
+            // What fills gaps stands in a few long runs.
+            let is_scattered = runs > 1 && 2 * runs > samples(value);
+            is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)
         };
         self.frequent.iter().take(MARKS).filter(|of| is_mark(of)).map(|of| (of.0, samples(of.0))).collect()
     }
@@ -87,7 +92,8 @@ impl Histogram {
     /// Whether values stand at both ends of the range and none in its middle.
     pub(super) fn is_hollow(&self) -> bool {
         let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-        let (ends, middle) = ([of(&self.bins[..2]), of(&self.bins[BINS - 2..])], of(&self.bins[BINS / 4..BINS * 3 / 4]));
+        let (ends, middle) =
+            ([of(&self.bins[..2]), of(&self.bins[BINS - 2..])], of(&self.bins[BINS / 4..BINS * 3 / 4]));
         let mean = self.sorted.len() as f64 / BINS as f64;
         self.frequent.len() > FEW && middle < 0.05 * mean && ends.iter().all(|end| *end > mean)
     }
@@ -97,7 +103,9 @@ impl Histogram {
         const LEAST: f64 = 8.0;
         let sharp = |outer: f64, next: f64| outer >= LEAST && outer > 0.4 * next && outer < 4.0 * next;
         let end = self.bins.len() - 1;
-        self.frequent.len() > FEW && sharp(self.bins[0], self.bins[1]) && sharp(self.bins[end], self.bins[end - 1])
+        self.frequent.len() > FEW
+            && sharp(self.bins[0], self.bins[1])
+            && sharp(self.bins[end], self.bins[end - 1])
     }
 
     /// Whether all values lie on one side of zero, and most of them near it.
@@ -110,11 +118,25 @@ impl Histogram {
                 || above < 0.5 && below > 0.9 && near_zero(most, least))
     }
 
+    /// The range of nearly all values of noise as wide as the middle half is, about this.
+    pub(super) fn usual(&self) -> (f64, f64) {
+        let [low, high] = [self.quantile(0.25), self.quantile(0.75)];
+        let reach = if high > low { 4.0 * (high - low) } else { self.range() };
+        (low - reach, high + reach)
+    }
+
     /// The step of the converter, where all values are whole numbers of it.
     pub(super) fn quantum(&self) -> Option<f64> {
-        let steps = self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-9 * self.range());
-        let step = steps.fold(f64::INFINITY, f64::min);
-        let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.01;
+        let steps =
+            self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-9 * self.range());
+        let mut step = steps.fold(f64::INFINITY, f64::min);
+        let (first, last) = (self.sorted[0], self.sorted.len() - 1);
+        // Longer spans say it to more digits than one step of rounded numbers does.
+        for at in (0..).map(|n| 1 << n).take_while(|at| *at < 2 * last) {
+            let span = self.sorted[last.min(at)] - first;
+            step = if span > 0.0 { span / (span / step).round() } else { step };
+        }
+        let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.05;
         (self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole)).then_some(step)
     }
 }

@@ -132,7 +132,10 @@ impl Inspection {
         let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
         let rails = self.rails(few.is_some(), &[&ends[..], &gaps].concat());
         let mut found = self.no_signal(kept, &rails);
-        found.extend(self.clipped(&rails, &at_rail));
+        // Values at both ends of numbers without their sign stand at no rail.
+        if found.iter().all(|of| of.kind != Kind::SignLost) {
+            found.extend(self.clipped(&rails, &at_rail));
+        }
         found.extend(ends.iter().map(|run| self.dead(run)));
         if few.is_none() {
             found.extend(self.held(&gaps));
@@ -158,12 +161,20 @@ impl Inspection {
     fn no_signal(&self, kept: &[f64], rails: &[Rail]) -> Vec<Quality> {
         let Some(histogram) = Histogram::of(kept) else { return Vec::new() };
         let whole = |kind, words: String| self.quality(kind, 1.0, 0, words);
-        let mut found: Vec<Quality> = self.pattern(kept).into_iter().chain(self.repeated(kept)).collect();
+        let repeats = similarity::repeats(kept);
+        // A gap, or a glitch, says nothing of places.
+        let (low, high) = histogram.usual();
+        let usual: Vec<f64> = kept.iter().map(|x| x.clamp(low, high)).collect();
+        let pattern = self.pattern(&usual, repeats.is_some_and(|repeats| repeats.is_waveform));
+        let mut found: Vec<Quality> = pattern.into_iter().collect();
+        found.extend(
+            repeats.filter(|repeats| !repeats.is_waveform).map(|repeats| self.repeated(kept, repeats)),
+        );
         if found.is_empty() {
             let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
             found.extend(self.marks(&histogram, &values));
         }
-        let piled = similarity::piled(kept, histogram.range()).filter(|_| rails.is_empty());
+        let piled = similarity::piled(kept, 0.5 * (high - low)).filter(|_| rails.is_empty());
         let across = jumps::crossings(kept, histogram.range());
         if let Some(share) = piled {
             found.push(self.quality(Kind::DriftingRails, share, 0, format!(
@@ -172,23 +183,28 @@ impl Inspection {
                  range",
                 percent(share)
             )));
-        } else if found.is_empty() && rails.is_empty() {
+        } else if found.is_empty() && (rails.is_empty() || histogram.is_hollow()) {
             found.extend(self.wrapped(kept, &histogram, across));
         }
         if histogram.is_of_another_format() {
             found.push(whole(Kind::Swapped, "values over more decades than a sensor has: the bytes of the numbers stand in the other \
                 order, or they are numbers of another format. Read them with the order of bytes of their recorder".to_owned()));
         } else if found.is_empty() && rails.is_empty() && histogram.is_one_sided() {
-            found.push(whole(Kind::SignLost, "sign lost: all values lie on one side of zero, and most of them near it, as those of a \
-                rectified signal do. Record the signal itself, with its sign".to_owned()));
+            found.push(whole(
+                Kind::SignLost,
+                "sign lost: all values lie on one side of zero, and most of them near it, as those of a \
+                rectified signal do. Record the signal itself, with its sign"
+                    .to_owned(),
+            ));
         }
         found.extend(self.jump());
         found
     }
 
     /// Samples that stand many times, zeros between samples, channels one after the other.
-    fn pattern(&self, kept: &[f64]) -> Option<Quality> {
-        let (places, kind) = similarity::pattern(kept)?;
+    fn pattern(&self, kept: &[f64], of_waveform: bool) -> Option<Quality> {
+        let (places, kind) =
+            similarity::pattern(kept).filter(|(_, kind)| *kind != Pattern::Unlike || !of_waveform)?;
         let lower = self.rate_hz / places as f64;
         let words = match kind {
             Pattern::Held => format!(
@@ -210,8 +226,8 @@ impl Inspection {
     }
 
     /// Stretches that stand twice.
-    fn repeated(&self, kept: &[f64]) -> Option<Quality> {
-        let Repeats { samples, first, lag } = similarity::repeats(kept)?;
+    fn repeated(&self, kept: &[f64], repeats: Repeats) -> Quality {
+        let Repeats { samples, first, lag, .. } = repeats;
         let share = samples as f64 / kept.len() as f64;
         let words = format!(
             "repeated: {} of the samples stand a second time, to the last bit, the first of them {lag} samples behind \
@@ -219,15 +235,17 @@ impl Inspection {
             percent(share),
             first as f64 / self.rate_hz
         );
-        Some(self.quality(Kind::Repeated, share, first as u64, words))
+        self.quality(Kind::Repeated, share, first as u64, words)
     }
 
     /// Values that are too frequent to be measured.
     fn marks(&self, histogram: &Histogram, rails: &[f64]) -> Option<Quality> {
         let marks = histogram.marks(rails);
         let share = marks.iter().map(|(_, samples)| self.part(*samples as u64)).sum::<f64>();
-        let each: Vec<String> =
-            marks.iter().map(|(value, samples)| format!("{samples} samples are exactly {}", spelt(*value))).collect();
+        let each: Vec<String> = marks
+            .iter()
+            .map(|(value, samples)| format!("{samples} samples are exactly {}", spelt(*value)))
+            .collect();
         let words = format!(
             "one value too often: {}, as no other value is; a mark of missing samples, or what a dead zone leaves, \
              which looks like knocks. Leave the field empty in their place",
@@ -243,7 +261,7 @@ impl Inspection {
         let full = quantum.and_then(|quantum| jumps::full_range(low, high, quantum));
         let share = across as f64 / kept.len() as f64;
         let hollow = histogram.is_hollow() && share > 0.01;
-        let breaks_off = histogram.breaks_off() && share > 1e-3;
+        let breaks_off = histogram.breaks_off() && quantum.is_some() && share > 1e-3;
         if !hollow && !breaks_off && (full.is_none() || across < 2) {
             return None;
         }
@@ -256,24 +274,37 @@ impl Inspection {
                 || format!("subtract the range of its numbers above {}", spelt(0.5 * (low + high))),
                 |(bits, _)| unsigned(bits),
             );
-            (Kind::SignLost, format!(
-                "sign lost: values stand at both ends of the range, {} to {}, and none between, as those of signed \
+            (
+                Kind::SignLost,
+                format!(
+                    "sign lost: values stand at both ends of the range, {} to {}, and none between, as those of signed \
                  numbers that were read as unsigned: {cure}",
-                spelt(low), spelt(high)
-            ))
-        } else if let Some(bytes) = quantum.filter(|_| breaks_off).and_then(|q| jumps::swapped_bytes(kept, q)) {
-            (Kind::Swapped, format!(
-                "bytes swapped: all values from {} to {} are as frequent, and with the {bytes} bytes of each number in \
+                    spelt(low),
+                    spelt(high)
+                ),
+            )
+        } else if let Some(bytes) = quantum.filter(|_| breaks_off).and_then(|q| jumps::swapped_bytes(kept, q))
+        {
+            (
+                Kind::Swapped,
+                format!(
+                    "bytes swapped: all values from {} to {} are as frequent, and with the {bytes} bytes of each number in \
                  the other order they lie near each other. Read the file with the other order of bytes",
-                spelt(low), spelt(high)
-            ))
+                    spelt(low),
+                    spelt(high)
+                ),
+            )
         } else {
-            (Kind::Wrapped, format!(
-                "wrapped: {across} steps lead from one end of the range, {} to {}, to the other, and no value piles up \
+            (
+                Kind::Wrapped,
+                format!(
+                    "wrapped: {across} steps lead from one end of the range, {} to {}, to the other, and no value piles up \
                  there: what lies beyond one end was written at the other. Measure with a smaller gain, or convert \
                  with more bits",
-                spelt(low), spelt(high)
-            ))
+                    spelt(low),
+                    spelt(high)
+                ),
+            )
         };
         Some(self.quality(kind, share, 0, words))
     }
@@ -284,7 +315,9 @@ impl Inspection {
             self.stretches.iter().filter(|s| s.count >= 0.5 * self.length as f64).copied().collect();
         let usual = median(&full.iter().map(Stretch::deviation).collect::<Vec<_>>())?;
         let (at, what) = jumps::gain(&full)
-            .map(|(at, ratio)| (at, format!("gain changed: all frequencies are {} times as strong", spelt(ratio))))
+            .map(|(at, ratio)| {
+                (at, format!("gain changed: all frequencies are {} times as strong", spelt(ratio)))
+            })
             .or_else(|| {
                 let (at, by) = jumps::offset(&full, usual)?;
                 Some((at, format!("offset changed: the mean moves by {}", spelt(by))))

@@ -40,7 +40,8 @@ pub(super) fn swapped_bytes(samples: &[f64], quantum: f64) -> Option<usize> {
             if back >= half { back - 2 * half } else { back }
         };
         // Numbers with or without a sign.
-        codes().all(|code| (-half..2 * half).contains(&code)) && codes().map(|code| square(turned(code))).sum::<f64>() < 0.25 * own
+        codes().all(|code| (-half..2 * half).contains(&code))
+            && codes().map(|code| square(turned(code))).sum::<f64>() < 0.25 * own
     })
 }
 
@@ -57,8 +58,15 @@ pub(super) fn gain(stretches: &[Stretch]) -> Option<(usize, f64)> {
     changes(stretches).find_map(|(at, before, behind)| {
         // Spreads of the samples, of their steps, and of the steps of these: shares of low and high frequencies.
         let ratios = [0, 1, 2].map(|order| {
-            let [(a, b), (c, d)] = [before, behind].map(|side| range(side.iter().map(|s| s.spreads()[order])));
-            if c > GAIN * b { c / b } else if a > GAIN * d && d > 0.0 { d / a } else { 1.0 }
+            let [(a, b), (c, d)] =
+                [before, behind].map(|side| range(side.iter().map(|s| s.spreads()[order])));
+            if c > GAIN * b {
+                c / b
+            } else if a > GAIN * d && d > 0.0 {
+                d / a
+            } else {
+                1.0
+            }
         });
         let (least, most) = range(ratios.into_iter());
         ((least > 1.0 || most < 1.0) && most < 2.0 * least).then_some((at, ratios[0]))

@@ -74,6 +74,8 @@ pub(super) struct Repeats {
     /// Where the first begins, and how far before it stood.
     pub(super) first: usize,
     pub(super) lag: usize,
+    /// Whether they are a short waveform that fills most of the record, as signals are that were made.
+    pub(super) is_waveform: bool,
 }
 
 pub(super) fn repeats(samples: &[f64]) -> Option<Repeats> {
@@ -83,14 +85,17 @@ pub(super) fn repeats(samples: &[f64]) -> Option<Repeats> {
         if at < past {
             continue;
         }
-        let hash = window.iter().fold(0_u64, |hash, x| (hash ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23));
+        let hash = window
+            .iter()
+            .fold(0_u64, |hash, x| (hash ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23));
         if hash % ONE_IN != 0 || window.windows(2).filter(|pair| pair[0] == pair[1]).count() > WINDOW / 4 {
             continue;
         }
         let Some(before) = seen.insert(hash, at) else { continue };
         let equal = |(a, b): &(&f64, &f64)| a == b;
         let behind = samples[at..].iter().zip(&samples[before..]).take_while(equal).count();
-        let ahead = samples[past..at].iter().rev().zip(samples[..before].iter().rev()).take_while(equal).count();
+        let ahead =
+            samples[past..at].iter().rev().zip(samples[..before].iter().rev()).take_while(equal).count();
         if ahead + behind >= STRETCH {
             if found.samples == 0 {
                 (found.first, found.lag) = (at - ahead, at - before);
@@ -99,8 +104,8 @@ pub(super) fn repeats(samples: &[f64]) -> Option<Repeats> {
             past = at + behind;
         }
     }
-    let is_waveform = found.lag < WAVEFORM && 2 * found.samples > samples.len();
-    (found.samples > 0 && !is_waveform).then_some(found)
+    found.is_waveform = found.lag < WAVEFORM && 2 * found.samples > samples.len();
+    (found.samples > 0).then_some(found)
 }
 
 /// Samples over which a rail hardly drifts, and bands below the highest of them, of this part of the range.
@@ -117,7 +122,9 @@ pub(super) fn piled(samples: &[f64], range: f64) -> Option<f64> {
         let mut bands = [0.0; BANDS];
         for near in samples.chunks_exact(NEAR) {
             let most = near.iter().map(|x| sign * x).fold(f64::NEG_INFINITY, f64::max);
-            near.iter().map(|x| ((most - sign * x) / (BAND * range)) as usize).for_each(|band| {
+            // What stands still is a gap, or a rail that does not drift.
+            let moving = near.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| pair[1]);
+            moving.map(|x| ((most - sign * x) / (BAND * range)) as usize).for_each(|band| {
                 if let Some(count) = bands.get_mut(band) {
                     *count += 1.0;
                 }

@@ -5,7 +5,7 @@ const NEIGHBOURS: usize = 4;
 /// Part of the pulses that may be put in or left out.
 const FEW: f64 = 0.05;
 /// Fewest samples from pulse to pulse.
-const LEAST: f64 = 2.5;
+const LEAST: f64 = 3.0;
 /// Largest variation of the speed between two pulses and the next two that a shaft follows.
 const SUDDEN: f64 = 0.5;
 /// Shortest gap whose variation counts [samples]: shorter ones vary by the grid of the samples.
@@ -135,11 +135,13 @@ impl Wheel {
         let grid = |n: usize| 1.5 / gaps[n];
         let differs = |n: usize| (over[n] - 1.0).abs() > 0.15 + grid(n);
         let odd: Vec<usize> = (0..gaps.len()).filter(|n| differs(*n)).collect();
-        let alike = |a: usize, b: usize| b < over.len() && (over[a] / over[b] - 1.0).abs() < 0.1 + grid(a) + grid(b);
+        let alike =
+            |a: usize, b: usize| b < over.len() && (over[a] / over[b] - 1.0).abs() < 0.1 + grid(a) + grid(b);
         let apart = odd.iter().skip(1).map(|n| n - odd[0]).take(64);
         let pulses = apart.filter(|n| *n > 1).find(|pulses| {
             let inner = odd.iter().filter(|n| *n + pulses < gaps.len()).count();
-            let recur = odd.iter().filter(|n| differs_at(&odd, *n + pulses) && alike(**n, *n + pulses)).count();
+            let recur =
+                odd.iter().filter(|n| differs_at(&odd, *n + pulses) && alike(**n, *n + pulses)).count();
             let turns = gaps.len() / pulses;
             turns > 2 && 10 * recur >= 9 * inner && 10 * odd.len() >= 8 * turns
         })?;
