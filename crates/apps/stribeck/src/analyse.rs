@@ -122,7 +122,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         return components::run(options, place);
     }
     let sound = baseline::read(options, place)?;
-    let reading = Reading { sound_db: baseline::scores(&sound), ..options.reading.clone() };
+    let reading = Reading {
+        sound_db: baseline::scores(&sound),
+        shared_hz: baseline::shared_hz(&sound),
+        ..options.reading.clone()
+    };
     let asked = Asked { options, sound: &sound, simulation: simulation.as_ref(), place };
     if let [file] = &files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));

@@ -6,7 +6,7 @@ use crate::conclusion::Doubt;
 use crate::quantities;
 use crate::record::quality::Quality;
 use crate::record::zone;
-use crate::words::sentence::conclude;
+use crate::words::sentence::{Told, conclude};
 use crate::{AccelerationUnit, Conclusion, Family, Health, Unexplained};
 
 quantities! {
@@ -95,7 +95,13 @@ impl MeasuredFindings {
         let turns = self.duration_s * self.speed_rpm.unwrap_or(0.0) / 60.0;
         let doubt = Doubt::of(is_spoilt, self.speed_uncertainty_rpm.is_some(), turns);
         self.conclusion = Conclusion::of(&self.families, self.unexplained.as_ref(), doubt);
-        let told = (doubt, &self.conclusion, self.unit.as_deref());
+        let told = Told {
+            doubt,
+            conclusion: &self.conclusion,
+            unit: self.unit.as_deref(),
+            speed_rpm: self.speed_rpm.unwrap_or(f64::NAN),
+            rate_hz: self.rate_hz,
+        };
         self.verdict = conclude(&self.families, self.unexplained.as_ref(), told);
     }
 

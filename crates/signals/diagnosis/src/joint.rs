@@ -9,7 +9,8 @@ use serde::Serialize;
 use stribeck_dsp::BandEnvelope;
 
 use crate::families::limits::ALPHA;
-use crate::{Analysis, Defect, Family};
+use crate::words::sentence::no_defect;
+use crate::{Analysis, Answer, Defect, Family, MeasuredFindings};
 
 /// The verdict on several channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,7 +67,8 @@ impl Joint {
         if channels.len() < 2 {
             return None;
         }
-        let mut notes = Vec::new();
+        let (channels, mut notes) = without_copies(channels);
+        let channels = &channels[..];
         let unit = &channels[0].1.findings.unit;
         let alike = channels.iter().all(|(_, analysis)| analysis.findings.unit == *unit);
         if !alike {
@@ -87,6 +89,20 @@ impl Joint {
         };
         Some(Self { channels: names, families, verdict, notes })
     }
+}
+
+/// The channels but for those with the samples of another one, and a note on each of these.
+fn without_copies<'a>(channels: &[(String, &'a Analysis)]) -> (Vec<(String, &'a Analysis)>, Vec<String>) {
+    let mut own: Vec<(String, &Analysis)> = Vec::new();
+    let mut notes = Vec::new();
+    for (name, analysis) in channels {
+        match own.iter().find(|(_, other)| other.beginning == analysis.beginning) {
+            Some((other, _)) => notes
+                .push(format!("channels `{other}` and `{name}` hold the same samples: they are one witness")),
+            None => own.push((name.clone(), *analysis)),
+        }
+    }
+    (own, notes)
 }
 
 impl JointFamily {
@@ -186,10 +202,10 @@ fn conclude(families: &[JointFamily], channels: &[(String, &Analysis)]) -> Strin
         let place = match (&family.nearest, shares.is_empty()) {
             (_, true) => String::new(),
             (Some(nearest), _) => format!(
-                "; of its knocks {}: {nearest} is nearest to it, if the ways to all sensors are alike",
+                "; of its impacts {}: {nearest} is nearest to it, if the ways to all sensors are alike",
                 shares.join(", ")
             ),
-            (None, _) => format!("; of its knocks {}: none is clearly nearer", shares.join(", ")),
+            (None, _) => format!("; of its impacts {}: none is clearly nearer", shares.join(", ")),
         };
         format!(
             "a defect of {} ({}, claimed by {}{place})",
@@ -203,7 +219,19 @@ fn conclude(families: &[JointFamily], channels: &[(String, &Analysis)]) -> Strin
         return format!("The {} channels together show {}.", channels.len(), claimed.join(" and "));
     }
     let single = families.iter().any(|f| f.channels.iter().any(|evidence| evidence.claimed));
-    let one = "one channel claims a defect by itself, which several channels make more likely by chance";
-    let none = "none claims one by itself";
-    format!("The {} channels together show no defect: {}.", channels.len(), if single { one } else { none })
+    if single {
+        return format!(
+            "The {} channels together cannot tell: one of them claims a defect by itself, which several make more \
+             likely by chance.",
+            channels.len()
+        );
+    }
+    // What the channel with the least limit says of a raceway holds for all.
+    let shows_none = channels.iter().map(|(_, analysis)| &analysis.findings);
+    let shows_none = shows_none.filter(|findings| findings.conclusion.raceways.answer == Answer::NoDefect);
+    let limit = |findings: &&MeasuredFindings| findings.conclusion.raceways.limit.unwrap_or(f64::INFINITY);
+    match shows_none.min_by(|a, b| limit(a).total_cmp(&limit(b))) {
+        Some(findings) => no_defect(&findings.conclusion, findings.unit.as_deref()),
+        None => format!("None of the {} channels can tell whether there is a defect.", channels.len()),
+    }
 }

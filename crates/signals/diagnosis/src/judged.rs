@@ -16,7 +16,8 @@ use crate::record::bands::over_period;
 use crate::record::pass::Record;
 use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
 use crate::speed::settled::Settled;
-use crate::words::sentence::conclude;
+use crate::speed::{by_verdict, estimate};
+use crate::words::sentence::{Told, conclude};
 use crate::{Answer, Conclusion, Defect, Error, Family, Machine};
 
 /// Families whose places go with the number of rolling elements.
@@ -147,25 +148,73 @@ impl Judged {
                 candidates.map_or_else(Decided::without_families, Candidates::decide),
             ),
         };
-        let is_corrected = speed.is_corrected || said_of_half.is_some();
+        let sought =
+            decided.asks_for_a_speed(estimate::REACH).then(|| near_speed(record, &machine)).flatten();
+        let is_corrected = speed.is_corrected || said_of_half.is_some() || sought.is_some();
+        let machine = match sought {
+            Some((at_speed, of_speed, note)) => {
+                decided = of_speed;
+                decided.notes.push(note);
+                at_speed
+            }
+            None => machine,
+        };
         let over = match &decided.first {
             Some(first) => over_period(channel, record.rate_hz, record.segment, first.comb_hz)?,
             None => Vec::new(),
         };
         let families = std::mem::take(&mut decided.families);
         let families = concluded(families, decided.first.as_ref(), record, &over)?;
+        let families = decided.with_power(families, record);
         let turns = record.duration_s() * machine.speed_rpm.unwrap_or(0.0) / 60.0;
         let doubt = Doubt::of(is_spoilt, speed.uncertainty_rpm.is_some(), turns);
         let conclusion = Conclusion::of(&families, decided.unexplained.as_ref(), doubt);
         let said = if families.is_empty() {
             format!("No verdict: {}.", decided.notes.join("; "))
         } else {
-            let unit = channel.unit.as_deref();
-            conclude(&families, decided.unexplained.as_ref(), (doubt, &conclusion, unit))
+            let (unit, rate_hz) = (channel.unit.as_deref(), record.rate_hz);
+            let speed_rpm = machine.speed_rpm.unwrap_or(f64::NAN);
+            let told = Told { doubt, conclusion: &conclusion, unit, speed_rpm, rate_hz };
+            conclude(&families, decided.unexplained.as_ref(), told)
         };
-        let verdict = std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" ");
+        let claims = families.iter().any(|f| f.claimed);
+        let in_hertz = if claims { None } else { speed_in_hertz(record, &machine) };
+        let verdict = std::iter::once(said).chain(said_of_half).chain(in_hertz).collect::<Vec<_>>().join(" ");
         Ok(Self { machine, speed, is_corrected, decided, families, over, conclusion, verdict })
     }
+}
+
+/// The machine at the speed near the given one at which a raceway is claimed and nothing stands higher, of all that
+/// the lines of the record support, what the rules say there, and a note; `None` for an exact speed.
+fn near_speed(record: &Record, machine: &Machine) -> Option<(Machine, Decided, String)> {
+    let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
+    let (rpm, bearing) = (machine.speed_rpm?, machine.bearing.as_ref().filter(|_| asked)?);
+    let Record { kept, rate_hz, bands, .. } = record;
+    kept.iter().all(|x| x.is_finite()).then_some(())?;
+    let (_, mut supported) = estimate::search(kept, *rate_hz, bands, bearing)?;
+    supported.retain(|speed| (60.0 * speed.hz / rpm - 1.0).abs() < estimate::REACH);
+    let found = by_verdict::find(record, machine, &supported)?;
+    let at_speed = Machine { speed_rpm: Some(60.0 * found.speed.hz), ..machine.clone() };
+    let decided = Candidates::of(record, &at_speed, Some(found.speed.hz), true).ok()?.decide();
+    Some((at_speed, decided, found.note_beside(rpm)))
+}
+
+/// Speeds below this may be meant in hertz [1/min].
+const MEANT_IN_HERTZ: f64 = 100.0;
+
+/// What to say where a raceway would be claimed if the number of the speed were one in hertz.
+fn speed_in_hertz(record: &Record, machine: &Machine) -> Option<String> {
+    let hz = machine.speed_rpm.filter(|rpm| *rpm < MEANT_IN_HERTZ)?;
+    let faster = Machine { speed_rpm: Some(60.0 * hz), ..machine.clone() };
+    let decided = Candidates::of(record, &faster, None, false).ok()?.decide();
+    let claimed = decided.families.iter().find(|f| f.claimed && RACEWAYS.contains(&f.name))?;
+    Some(format!(
+        "Is the speed {hz} Hz, not {hz} rpm? At {:.0} rpm it shows a defect of {} ({} at {:.2} Hz).",
+        60.0 * hz,
+        claimed.name.part(),
+        claimed.name,
+        claimed.measured_hz.unwrap_or(claimed.expected_hz)
+    ))
 }
 
 /// The families after the last rules: a second defect beside the first, claims that stand in one half of the

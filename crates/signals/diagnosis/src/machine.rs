@@ -34,6 +34,9 @@ pub struct Machine {
     ///
     /// [`MeasuredFindings::score_db`]: crate::MeasuredFindings::score_db
     pub sound_db: Vec<f64>,
+    /// Combs that stand in records of this machine when it was healthy, at the same speed, and are no family's [Hz]:
+    /// those of a converter, of the mains, of another bearing.
+    pub shared_hz: Vec<f64>,
     /// Other shafts, gears and bearings.
     pub around: Surroundings,
 }

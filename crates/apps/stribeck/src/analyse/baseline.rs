@@ -30,6 +30,12 @@ pub(super) fn scores(sound: &[Baseline]) -> Vec<f64> {
     healthy.filter_map(|baseline| baseline.analysis.findings.score_db).collect()
 }
 
+/// Combs of healthy records that are no family's [Hz]: the machine has them.
+pub(super) fn shared_hz(sound: &[Baseline]) -> Vec<f64> {
+    let healthy = sound.iter().filter(|baseline| claim(&baseline.analysis).is_none());
+    healthy.filter_map(|baseline| Some(baseline.analysis.findings.unexplained.as_ref()?.hz)).collect()
+}
+
 /// The defect that a record of the healthy machine claims itself, in words.
 pub(super) fn claim(analysis: &Analysis) -> Option<String> {
     let claimed = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name());

@@ -49,6 +49,9 @@ pub(crate) struct Reading {
     /// to this one
     #[arg(long, value_name = "N", default_value_t = 1.0, requires = "tacho", value_parser = pulses_per_turn)]
     pub(super) pulses_per_turn: f64,
+    /// The outer ring turns at --speed-rpm and the shaft stands still, as in hubs, idlers and planets
+    #[arg(long)]
+    pub(super) outer_ring_turns: bool,
     /// Radial load of the bearing [N], a number or a range such as 50..150: how far it presses an element
     /// together belongs to the length of a spall [default: 0.2 to 10 % of the static rating]
     #[arg(long, value_name = "RANGE", value_parser = range)]
@@ -63,9 +66,11 @@ pub(crate) struct Reading {
     /// How far an element is pressed together over a spall, as a scene of `--simulate` says.
     #[arg(skip)]
     pub(super) pressed: Option<Pressed>,
-    /// Scores of records of the sound machine [dB].
+    /// Scores of records of the healthy machine [dB], and their combs that are no family's [Hz].
     #[arg(skip)]
     pub(super) sound_db: Vec<f64>,
+    #[arg(skip)]
+    pub(super) shared_hz: Vec<f64>,
     /// Factor of every sample, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     pub(super) scale: f64,
@@ -493,7 +498,9 @@ fn machine(
             }
         }
     };
-    let outer_speed_rpm = scene.map_or(0.0, stribeck_analysis::diagnosis::outer_speed_rpm);
+    // A shaft that stands turns backwards against its outer ring.
+    let of_outer = speed_rpm.filter(|_| options.outer_ring_turns).map_or(0.0, |rpm| -rpm);
+    let outer_speed_rpm = scene.map_or(of_outer, stribeck_analysis::diagnosis::outer_speed_rpm);
     // A measured speed, or that of a run, needs no correction.
     let nominal =
         matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.len() == 1);
@@ -507,6 +514,7 @@ fn machine(
         clearance_um: options.clearance_um,
         housing_um_per_kn: options.housing_um_per_kn,
         sound_db: options.sound_db.clone(),
+        shared_hz: options.shared_hz.clone(),
         pressed: options.pressed,
         ..Machine::default()
     };

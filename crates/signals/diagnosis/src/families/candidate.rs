@@ -148,7 +148,7 @@ impl Candidate {
             height_db: decibel(comb.height),
             level_db: Some(decibel(comb.ratios[0])),
             harmonics: comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count(),
-            depth: Some(band.depth(comb.fundamental_hz)),
+            depth: Some(depth_of_comb(band, spectrum, comb.fundamental_hz)),
             depth_band_hz: band_hz,
             ..self.family
         };
@@ -192,8 +192,8 @@ impl Candidate {
             near.is_ok_and(|comb| comb.p_value * standing.searched < ALPHA)
         };
         let start = (family.depth, family.depth_band_hz);
-        let (depth, depth_band_hz) = bands.iter().filter(stands).fold(start, |deepest, (band, _)| {
-            let depth = depth_of(family.name, band, hz, cage_hz);
+        let (depth, depth_band_hz) = bands.iter().filter(stands).fold(start, |deepest, (band, spectrum)| {
+            let depth = depth_of(family.name, (band, spectrum), hz, cage_hz);
             let is_deeper = deepest.0.is_none_or(|deepest| depth > deepest);
             if is_deeper { (Some(depth), Some((band.low_hz, band.high_hz))) } else { deepest }
         });
@@ -201,11 +201,29 @@ impl Candidate {
     }
 }
 
+/// Impacts slower than this [Hz] are short beside their period, and up to that frequency their lines are as high.
+const SLOW_HZ: f64 = 5.0;
+const LINES_TO_HZ: f64 = 100.0;
+
+/// Depth of the modulation at a comb. The power of slow impacts is a small part of the noise's, and in as many more
+/// lines: theirs are added, less the background.
+fn depth_of_comb(band: &BandEnvelope, spectrum: &Whitened, comb_hz: f64) -> f64 {
+    if comb_hz >= SLOW_HZ {
+        return band.depth(comb_hz);
+    }
+    let above_background = |n: u32| {
+        let hz = f64::from(n) * comb_hz;
+        let ratio = spectrum.at(hz);
+        band.depth(hz).powi(2) * (1.0 - 1.0 / ratio.max(1.0))
+    };
+    (1..=(LINES_TO_HZ / comb_hz) as u32).map(above_background).sum::<f64>().sqrt()
+}
+
 /// Depth of the modulation at a comb; the power of an element's knocks is in the sidebands of the cage, too.
-fn depth_of(name: Defect, band: &BandEnvelope, comb_hz: f64, cage_hz: f64) -> f64 {
+fn depth_of(name: Defect, (band, spectrum): (&BandEnvelope, &Whitened), comb_hz: f64, cage_hz: f64) -> f64 {
     const BESIDE: i32 = 2;
     if name != Defect::Bsf {
-        return band.depth(comb_hz);
+        return depth_of_comb(band, spectrum, comb_hz);
     }
     let lines = (-BESIDE..=BESIDE).map(|k| band.depth(comb_hz + f64::from(k) * cage_hz).powi(2));
     lines.sum::<f64>().sqrt()

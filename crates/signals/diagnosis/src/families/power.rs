@@ -14,6 +14,7 @@ use crate::families::controls::controls;
 use crate::families::family::{Family, SOUND_DEPTHS};
 use crate::families::limits::{ALPHA, KNOCK};
 use crate::families::machine_lines::OwnLines;
+use crate::families::unrelated::SLIP;
 use crate::record::pass::Record;
 
 /// Impacts of which nine in ten would be claimed.
@@ -36,15 +37,31 @@ fn mean_power(name: Defect) -> f64 {
 /// Power of a harmonic that lies between two lines, of which the higher counts.
 const BETWEEN_LINES: f64 = 0.8;
 
-/// The least impacts of a family that any band could have shown; `searched` are the combs tried.
-pub(crate) fn limit(
-    (name, comb_hz, searched): (Defect, f64, f64),
+/// A family with the impacts that the record would have shown, and those that it shows.
+pub(crate) fn with_power(
+    family: Family,
+    bands: &[(&BandEnvelope, Whitened)],
+    own: &OwnLines,
+    record: &Record,
+) -> Family {
+    let comb_hz = family.name.shocks_per_period() * family.expected_hz;
+    let limit = limit(family.name, comb_hz, bands, own, record);
+    let shown_over_rms = shown_over_rms(&family, comb_hz, bands, record);
+    Family { limit, shown_over_rms, ..family }
+}
+
+/// The least impacts of a family that any band could have shown.
+fn limit(
+    name: Defect,
+    comb_hz: f64,
     bands: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
     record: &Record,
 ) -> Option<Limit> {
     let of = |(band, spectrum): &(&BandEnvelope, Whitened)| {
         let ring_s = ring_s(&record.density, band).min(0.25 / comb_hz);
+        let tried = CombTest::FOUR_OF_FIVE.candidates(spectrum, 2.0 * SLIP * comb_hz);
+        let searched = bands.len() as f64 * tried;
         let added = least_added(spectrum, band, comb_hz, (ring_s, searched), own)?;
         let power = 2.0 * band.rms.powi(2) * added;
         let peak = (2.0 * power / (comb_hz * ring_s * mean_power(name))).sqrt();
@@ -54,7 +71,7 @@ pub(crate) fn limit(
 }
 
 /// Peak of the impacts that modulate a band as deeply as a family does, over the root mean square of the record.
-pub(crate) fn shown_over_rms(
+fn shown_over_rms(
     family: &Family,
     comb_hz: f64,
     bands: &[(&BandEnvelope, Whitened)],
@@ -71,7 +88,7 @@ pub(crate) fn shown_over_rms(
 
 /// How long the record rings in a band [s]: one over its equivalent width, which is the decay time of the one
 /// resonance whose spectrum is as wide.
-pub(crate) fn ring_s((hz, density): &(Vec<f64>, Vec<f64>), band: &BandEnvelope) -> f64 {
+fn ring_s((hz, density): &(Vec<f64>, Vec<f64>), band: &BandEnvelope) -> f64 {
     let inside = hz.iter().zip(density).filter(|(hz, _)| (band.low_hz..band.high_hz).contains(*hz));
     let (sum, squares) = inside.fold((0.0, 0.0), |(sum, squares), (_, s)| (sum + s, squares + s * s));
     let step_hz = hz.get(1).copied().unwrap_or(f64::NAN);

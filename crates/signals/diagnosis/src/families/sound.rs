@@ -12,6 +12,10 @@ use crate::{Defect, Reason};
 
 /// Fewest sound records by which a family is claimed: one more exceeds all of seven once in eight.
 pub const LEAST_SOUND: usize = 7;
+/// Fewer, two at least, claim one by its distance from the highest of them [dB]: of 24 healthy records of IMS beside
+/// two of the same channel none stands more than 1.5 dB above both.
+pub(crate) const LEAST_FEW: usize = 2;
+const ABOVE_FEW_DB: f64 = 3.1;
 /// Largest probability that a further sound record has as high a score, with which a family is claimed.
 pub(crate) const BEYOND_SOUND: f64 = 0.01;
 
@@ -65,17 +69,23 @@ impl BesideSound {
 
     /// Whether it is beyond what sound records of the machine show.
     pub(crate) fn is_beyond(&self) -> bool {
-        self.records >= LEAST_SOUND && self.as_high == 0 && self.p_value < BEYOND_SOUND
+        self.is_above_few() || self.records >= LEAST_SOUND && self.as_high == 0 && self.p_value < BEYOND_SOUND
+    }
+
+    /// Whether it is that by its distance from few of them.
+    pub(crate) fn is_above_few(&self) -> bool {
+        let few = (LEAST_FEW..LEAST_SOUND).contains(&self.records);
+        few && self.score_db - self.highest_db >= ABOVE_FEW_DB
     }
 
     /// How many sound records show as much, in words.
     pub(crate) fn note(&self) -> String {
         let Self { name, score_db, records, as_high, .. } = self;
-        let few = format!("; at least {LEAST_SOUND} of them enter the verdict");
+        let few = format!("; at least {LEAST_FEW} of them enter the verdict");
         format!(
             "{name} stands {score_db:.1} dB above combs at other spacings, and {as_high} of {records} records of the sound \
              machine have a family that stands as far{}",
-            if *records < LEAST_SOUND { few.as_str() } else { "" }
+            if *records < LEAST_FEW { few.as_str() } else { "" }
         )
     }
 }

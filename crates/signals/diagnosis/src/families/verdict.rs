@@ -37,6 +37,8 @@ pub(crate) struct Candidates {
     pub(crate) families: Vec<Family>,
     /// A comb that is no family's and stands higher.
     pub(crate) unexplained: Option<Unexplained>,
+    /// The machine's own lines.
+    own: OwnLines,
     /// The combs of all bands that are no family's, and one at half the frequency of a raceway.
     foreign: Vec<UnexplainedComb>,
     at_half: Option<Unexplained>,
@@ -67,6 +69,8 @@ pub(crate) struct Decided {
     pub(crate) sound: Option<BesideSound>,
     /// A comb that is no family's and stands higher.
     pub(crate) unexplained: Option<Unexplained>,
+    /// The machine's own lines; none without families.
+    own: Option<OwnLines>,
 }
 
 /// The first defect, as the search for a second one needs it.
@@ -136,7 +140,11 @@ impl Candidates {
         let looked: Vec<Candidate> = rolling.collect::<Vec<_>>().into_iter().chain([cage]).collect();
         let highest_hz = places[..2].iter().fold(0.0_f64, |most, hz| most.max(*hz));
         let there = above_noise(&looked[..3]);
-        let of_others = |hz: f64| machine.around.may_be(hz / shaft_hz);
+        let width_hz = own.width_hz;
+        let of_others = |hz: f64| {
+            machine.around.may_be(hz / shaft_hz)
+                || machine.shared_hz.iter().any(|of| is_part(hz, *of, width_hz))
+        };
         let combs = unexplained::of_each_band(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
         let in_its_band = |candidate: Candidate| match candidate.family.name {
             Defect::Bpfo | Defect::Bpfi => candidate.beside_foreign(&combs, &whitened),
@@ -156,7 +164,7 @@ impl Candidates {
             .enumerate()
             .map(|(at, candidate)| {
                 let half = halved.filter(|(first, _)| *first == at).map(|(_, half)| half);
-                beside_controls(candidate, half, &whitened, &own, (first_hz, record))
+                beside_controls(candidate, half, &whitened, &own, first_hz)
             })
             .collect();
         let modulated = is_modulated_by_the_cage(&measured, &whitened);
@@ -170,6 +178,9 @@ impl Candidates {
         let score_db = farthest(&shared).map(|(_, score_db)| score_db);
         let sound = BesideSound::of(&shared, &machine.sound_db);
         let of_sound = sound.as_ref().map(BesideSound::note);
+        let set_aside = machine.shared_hz.iter().map(|hz| {
+            format!("the comb at {hz:.2} Hz stands in records of the healthy machine, too, and is left aside")
+        });
         let at_half = halved.map(|(_, half)| half);
         let found = highest.filter(|found| decibel(found.comb.height) > first_db);
         let skids = found.filter(|_| by_shaft).and_then(|found| skidding(&shared, found));
@@ -182,10 +193,11 @@ impl Candidates {
             (Some(found), None) => (shared, Some(found.report(shaft_hz)), Vec::new()),
             (None, _) => (shared, at_half, Vec::new()),
         };
-        let notes = of_sound.into_iter().chain(notes).collect();
+        let notes = of_sound.into_iter().chain(set_aside).chain(notes).collect();
         Ok(Self {
             families,
             unexplained,
+            own,
             foreign: if skids.is_some() { Vec::new() } else { combs },
             at_half,
             score_db,
@@ -204,6 +216,7 @@ impl Candidates {
         let Self {
             families,
             unexplained,
+            own,
             foreign,
             at_half,
             rolling,
@@ -225,15 +238,38 @@ impl Candidates {
             cage_hz,
             resolution_hz,
         });
-        Decided { families: decided, notes, first, score_db, sound, unexplained }
+        Decided { families: decided, notes, first, score_db, sound, unexplained, own: Some(own) }
     }
 }
 
 impl Decided {
+    /// The same families with the impacts that the record would have shown, and those that it shows.
+    pub(crate) fn with_power(&self, families: Vec<Family>, record: &Record) -> Vec<Family> {
+        let Some(own) = &self.own else { return families };
+        let whitened = whitened(record);
+        let of = |family: Family| match family.band_hz {
+            Some(_) => power::with_power(family, &whitened, own, record),
+            None => family,
+        };
+        families.into_iter().map(of).collect()
+    }
+
+    /// Whether a raceway would stand where the highest comb is that is no family's, or its second or third line, at a
+    /// speed within `reach` of the given one, and nothing is claimed.
+    pub(crate) fn asks_for_a_speed(&self, reach: f64) -> bool {
+        let is_raceway = |family: &&Family| matches!(family.name, Defect::Bpfo | Defect::Bpfi);
+        let near = |hz: f64, family: &Family| {
+            let times = hz / family.expected_hz;
+            (times / times.round().clamp(1.0, 3.0) - 1.0).abs() < reach
+        };
+        let is_silent = !self.families.iter().any(|family| family.claimed);
+        let comb = self.unexplained.filter(|_| is_silent);
+        comb.is_some_and(|comb| self.families.iter().filter(is_raceway).any(|family| near(comb.hz, family)))
+    }
     /// No families, with a note on what is missing for them.
     pub(crate) fn without_families(note: String) -> Self {
         let (families, notes) = (Vec::new(), vec![note]);
-        Self { families, notes, first: None, score_db: None, sound: None, unexplained: None }
+        Self { families, notes, first: None, score_db: None, sound: None, unexplained: None, own: None }
     }
 }
 
@@ -293,6 +329,12 @@ fn whitened(record: &Record) -> Vec<(&BandEnvelope, Whitened)> {
     bands.filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?))).collect()
 }
 
+/// Whether a comb at `hz` shares lines with another one: a fraction of small numbers of it.
+fn is_part(hz: f64, of_hz: f64, width_hz: f64) -> bool {
+    const MOST: u32 = 5;
+    (1..=MOST).any(|p| (1..=MOST).any(|q| (f64::from(q) * hz - f64::from(p) * of_hz).abs() < width_hz))
+}
+
 /// Whether multiples of the shaft stand as high as the first lines of the raceways between them, by their places
 /// [Hz]: where a raceway stands between lower ones, its lines are not the shaft's.
 fn shaft_stands(whitened: &[(&BandEnvelope, Whitened)], shaft_hz: f64, places: &[f64]) -> bool {
@@ -349,7 +391,7 @@ fn beside_controls(
     half: Option<Unexplained>,
     whitened: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
-    (first_hz, record): (Option<f64>, &Record),
+    first_hz: Option<f64>,
 ) -> Family {
     let Candidate { family, standing, .. } = candidate;
     let reason = half.map_or(family.reason.clone(), |half| {
@@ -360,18 +402,13 @@ fn beside_controls(
         ))
     });
     let judged = Family { reason, ..family };
-    let Some(Standing { band, comb, comb_hz, times, searched }) = standing else {
+    let Some(Standing { band, comb, comb_hz, times, .. }) = standing else {
         return judged.calibrated();
     };
-    let places = searched * CombTest::FOUR_OF_FIVE.candidates(&whitened[band].1, 2.0 * SLIP * comb_hz);
-    let shown_over_rms = power::shown_over_rms(&judged, comb_hz, whitened, record);
-    let limit = power::limit((judged.name, comb_hz, places), whitened, own, record);
     let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(own));
     let ranked = Family {
         rank: part_as_high(&comb, &controls),
         controls: controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect(),
-        limit,
-        shown_over_rms,
         ..judged
     };
     let measured_hz = ranked.is_there().then_some(comb.fundamental_hz / times);

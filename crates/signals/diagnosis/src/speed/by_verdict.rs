@@ -67,6 +67,17 @@ impl SpeedByVerdict {
             && other.height_db >= self.height_db
     }
 
+    /// The note on it where another speed was given [1/min].
+    pub(crate) fn note_beside(&self, given_rpm: f64) -> String {
+        format!(
+            "at the {given_rpm:.1} rpm that were given no family stands, and at {:.1} ± {:.1} rpm, which the lines of \
+             shaft and bearing support, too, a defect of {} stands above everything else: that speed is taken",
+            60.0 * self.speed.hz,
+            60.0 * self.speed.uncertainty_hz,
+            self.name.part()
+        )
+    }
+
     /// The note on it.
     pub(crate) fn note(&self, tried: usize) -> String {
         format!(

@@ -28,12 +28,48 @@ fn may_be_of(family: &Family, hz: f64) -> bool {
     (1.0..=3.0).contains(&times) && (hz / (times * comb_hz) - 1.0).abs() < SLIP
 }
 
-/// The verdict in words, with the conclusion and the unit of its limits.
-pub(crate) fn conclude(
-    families: &[Family],
-    unexplained: Option<&Unexplained>,
-    (doubt, conclusion, unit): (Option<Doubt>, &Conclusion, Option<&str>),
-) -> String {
+/// What the verdict in words takes beside families.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Told<'a> {
+    pub(crate) doubt: Option<Doubt>,
+    pub(crate) conclusion: &'a Conclusion,
+    /// Unit of the channel.
+    pub(crate) unit: Option<&'a str>,
+    /// Speed of the shaft [1/min], and samples a second.
+    pub(crate) speed_rpm: f64,
+    pub(crate) rate_hz: f64,
+}
+
+#[cfg(test)]
+impl<'a> Told<'a> {
+    /// Of a conclusion at 1500 rpm.
+    pub(crate) fn of(conclusion: &'a Conclusion) -> Self {
+        Self { doubt: None, conclusion, unit: None, speed_rpm: 1500.0, rate_hz: 12_800.0 }
+    }
+}
+
+/// Farthest that a speed, or a rate, is off in such a hypothesis, as a part of it.
+const OFF: f64 = 0.07;
+
+/// The raceway whose place is beside a comb, and the speed or the rate at which it would be there.
+fn hypothesis(families: &[Family], hz: f64, told: Told<'_>) -> Option<String> {
+    let raceways = families.iter().filter(|f| matches!(f.name, Defect::Bpfo | Defect::Bpfi));
+    let off = |f: &&Family| (hz / f.expected_hz - 1.0).abs();
+    let nearest = raceways.min_by(|a, b| off(a).total_cmp(&off(b))).filter(|f| off(f) < OFF)?;
+    let times = hz / nearest.expected_hz;
+    Some(format!(
+        "{} is {:.1} % away: it is {}, if the speed is {:.0} rpm or the rate {:.0} Hz",
+        nearest.name,
+        100.0 * (times - 1.0).abs(),
+        nearest.name.part(),
+        times * told.speed_rpm,
+        told.rate_hz / times
+    ))
+}
+
+/// The verdict in words.
+pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, told: Told<'_>) -> String {
+    let Told { doubt, conclusion, unit, .. } = told;
     // Two families that cannot be distinguished are reported under the name of the first.
     let spoken_for = |at: usize, family: &Family| {
         families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))
@@ -71,21 +107,25 @@ pub(crate) fn conclude(
     if let Some(other) = unexplained {
         if let Some(hidden) = families.iter().find(|f| f.undecided && may_be_of(f, other.hz)) {
             return format!(
-                "The record knocks at {:.2} Hz, {:.3} times the shaft, where {} lies beside one of the machine's own \
+                "The record has impacts at {:.2} Hz, {:.3} times the shaft, where {} lies beside one of the machine's own \
                  lines: a measured speed or a longer record would tell them apart.",
                 other.hz, other.order, hidden.name
             );
         }
-        return format!(
-            "The record knocks at {:.2} Hz, {:.3} times the shaft, which is no family of this bearing: slip, \
-             speed or bearing is not what was given, or another part of the machine knocks.",
-            other.hz, other.order
-        );
+        let at = format!("The record has impacts at {:.2} Hz, {:.3} times the shaft", other.hz, other.order);
+        return match hypothesis(families, other.hz, told) {
+            Some(words) => format!("{at}. {words}; a measured speed would tell."),
+            None => format!(
+                "{at}, which is no family of this bearing: another part of the machine has them, its converter or \
+                 another bearing, or speed or bearing is not what was given. Records of the healthy machine \
+                 (`--baseline`) set aside what stands in them, too."
+            ),
+        };
     }
     let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     if let Some(highest) = highest {
         return format!(
-            "The record has knocks, and does not show where: {} stands highest, but combs at other spacings \
+            "The record has impacts, and does not show where: {} stands highest, but combs at other spacings \
              stand as high. A longer record, or one nearer to the bearing, may tell.",
             highest.name
         );
@@ -177,7 +217,7 @@ mod tests {
         let bsf = Family { undecided: true, ..Family::expected(Defect::Bsf, 49.861) };
         let says = |family: &Family, hz: f64| {
             let other = Unexplained { hz, order: hz / 25.0, height_db: 20.0, band_hz: (1e3, 2e3) };
-            conclude(std::slice::from_ref(family), Some(&other), (None, &Conclusion::default(), None))
+            conclude(std::slice::from_ref(family), Some(&other), Told::of(&Conclusion::default()))
         };
         assert!(says(&bsf, 99.47).contains("where BSF lies beside one of the machine's own lines"));
         assert!(says(&bsf, 90.0).contains("no family of this bearing"));
