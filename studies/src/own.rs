@@ -17,7 +17,7 @@ const KERNELS: &[Kernel] = &[
         Some(bearing.inner_race_diameter_mm - 2.0 * bearing.inner_ring_thickness_mm)
     }),
     ("clearance_um", |run| Some(1e6 * run.scene.clearance)),
-    ("load_kn", |run| Some(1e-3 * run.scene.load)),
+    ("load_kn", |run| Some(1e-3 * run.scene.written.operation.load_n)),
     ("largest_kn", |run| Some(1e-3 * Loads::of(&run.scene).ok()?.largest_n)),
     ("pressure_mpa", |run| Some(1e-6 * Loads::of(&run.scene).ok()?.pressure_pa[1])),
     ("safety", |run| Some(Loads::of(&run.scene).ok()?.static_safety())),

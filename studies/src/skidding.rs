@@ -22,7 +22,7 @@ const KERNELS: &[Kernel] = &[
     ("power_w", |run| Some(run.info.as_ref()?.energy.heat_j / run.scene.duration)),
     ("palmgren_w", |run| Some(palmgren_w(run))),
     ("energy", |run| Some(100.0 * run.info.as_ref()?.energy.of_larger())),
-    ("load_n", |run| Some(run.scene.load)),
+    ("load_n", |run| Some(run.scene.written.operation.load_n)),
     ("speed_rpm", |run| Some(run.scene.duty.speed_rpm(0.0))),
     ("viscosity", |run| Some(1e3 * run.scene.film?.viscosity)),
     ("clearance_um", |run| Some(1e6 * run.scene.clearance)),

@@ -124,7 +124,7 @@ pub fn normal(dice: &mut Dice) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stribeck_scene::records::RecordsScene;
+    use stribeck_scene::scene::RecordsScene;
 
     /// A 6205 at 900 rpm whose elements unload and strike at the ends of a spall of 2 mm.
     fn scene() -> Scene {

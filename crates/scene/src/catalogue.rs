@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use stribeck_theory::catalogue::{self, ADVICE, Boundary, CatalogueBearing, Element, plain};
 
-use crate::fields::group;
+use crate::group;
 use crate::scene::{Assumed, BearingScene, ElementKind, Scene};
 use crate::scene_file::{self, without_mark};
 

@@ -10,7 +10,6 @@ mod dialect;
 mod exclusions;
 mod extent;
 mod finding;
-pub(crate) mod foreign;
 mod geometry;
 mod load;
 mod named;
@@ -23,10 +22,10 @@ mod ring_meshes;
 mod sources;
 mod suggest;
 mod table;
-pub(crate) mod wording;
 
 use std::path::Path;
 
+pub use crate::field::wording::{list, shown};
 use crate::fields::tree::Node;
 use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
@@ -38,7 +37,6 @@ pub use problem::{Place, Problem, SceneError, offset, place_in_file};
 pub use sources::Kind;
 use sources::{SCENE, Sources, written_by};
 pub use suggest::nearest;
-pub use wording::{list, shown};
 
 /// Paths of fields that several checks name.
 const OUTER_RING_MESH: &str = "outer_ring_mesh";
@@ -247,7 +245,7 @@ pub fn read_as<T: Value>(text: &str, file: &str, kind: &'static Kind) -> Result<
     let whole = Spot::of(T::SHAPE);
     let mut found = reading::faults(&sources.tree, whole, "", &sources);
     if found.is_empty() {
-        let outside = ranges::in_tree(&Scene::default(), &sources.tree, whole);
+        let outside = ranges::in_tree(&Scene::default().write(), &sources.tree, whole);
         found = outside.into_iter().take(MOST_TOLD).map(|finding| sources.problem(finding)).collect();
     }
     match T::read(&sources.tree).filter(|_| found.is_empty()) {

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
-use super::wording::number;
+use crate::field::wording::number;
 use crate::housing::HousingScene;
 use crate::scene::{ModelScene, Scene};
 

@@ -2,8 +2,8 @@
 //! that cannot turn, and courses over time out of range.
 
 use super::finding::{Finding, Remedy};
-use super::wording::{number, round_down, shown};
 use super::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
+use crate::field::wording::{number, round_down, shown};
 use crate::housing::HousingScene;
 use crate::scene::{ProfileScene, Scene};
 

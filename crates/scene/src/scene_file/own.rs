@@ -7,7 +7,7 @@
 use super::named::{self, Surrounded, tidy};
 use super::problem::Problem;
 use super::sources::Sources;
-use super::wording::number;
+use crate::field::wording::number;
 use crate::scene::{Assumed, BearingScene, ElementKind, Scene};
 use stribeck_theory::catalogue::normal_clearance_mm;
 

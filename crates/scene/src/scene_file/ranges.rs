@@ -1,7 +1,7 @@
 //! Numbers outside the range of their field, and names that name nothing.
 
 use super::finding::{Finding, Remedy};
-use super::wording::{number, shown};
+use crate::field::wording::{number, shown};
 use crate::fields::tree::{Content, Node, join};
 use crate::fields::value::Value;
 use crate::fields::{Shape, Spot, spot};
@@ -14,13 +14,14 @@ const MAX_SENSORS: usize = 64;
 
 /// Everything outside its range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let mut found = in_tree(scene, &scene.write(), Spot::ROOT);
+    let tree = scene.write();
+    let mut found = in_tree(&tree, &tree, Spot::ROOT);
     found.extend(names(scene));
     found
 }
 
-/// Numbers of a tree outside their range.
-pub(crate) fn in_tree(scene: &Scene, tree: &Node, whole: Spot) -> Vec<Finding> {
+/// Numbers of a tree outside their range, which other fields of `scene` may set.
+pub(crate) fn in_tree(scene: &Node, tree: &Node, whole: Spot) -> Vec<Finding> {
     let mut found = Vec::new();
     numbers(scene, tree, whole, "", &mut found);
     found
@@ -29,12 +30,12 @@ pub(crate) fn in_tree(scene: &Scene, tree: &Node, whole: Spot) -> Vec<Finding> {
 /// Range of the field at `path`, in words, where `value` is outside.
 pub(crate) fn refuses(path: &str, value: f64) -> Option<String> {
     let (range, unit) = spot(path, None)?.range?;
-    let scene = Scene::default();
+    let scene = Scene::default().write();
     (!range.contains(value, &scene)).then(|| range.in_words(unit, &scene))
 }
 
 /// Numbers outside their range in a value of a scene.
-fn numbers(scene: &Scene, node: &Node, spot: Spot, path: &str, found: &mut Vec<Finding>) {
+fn numbers(scene: &Node, node: &Node, spot: Spot, path: &str, found: &mut Vec<Finding>) {
     match (spot.shape.there(), &node.content) {
         // Its name may stand before its brackets.
         (Shape::Group(group), Content::Group(_) | Content::Behind(..)) => {
@@ -67,7 +68,7 @@ fn numbers(scene: &Scene, node: &Node, spot: Spot, path: &str, found: &mut Vec<F
 }
 
 /// The finding on a number outside the range of its field.
-fn outside(scene: &Scene, node: &Node, spot: Spot, path: &str) -> Option<Finding> {
+fn outside(scene: &Node, node: &Node, spot: Spot, path: &str) -> Option<Finding> {
     let ((range, unit), value) = (spot.range?, f64::read(node)?);
     if range.contains(value, scene) {
         return None;

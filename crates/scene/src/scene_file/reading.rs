@@ -3,12 +3,12 @@
 
 use std::ops::Range;
 
-use super::foreign;
 use super::problem::{MOST_TOLD, Problem};
 use super::sources::{Kind, Sources};
 use super::suggest;
-use super::wording::{list, shown};
 use crate::catalogue;
+use crate::field::foreign;
+use crate::field::wording::{list, shown};
 use crate::fields::tree::{Broken, Content, Node, Source, Stop, join};
 use crate::fields::value::Value;
 use crate::fields::{Group, Shape, Spot, Words, spot};

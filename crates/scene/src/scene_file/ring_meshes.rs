@@ -2,8 +2,8 @@
 //! them.
 
 use super::finding::{Finding, Remedy};
-use super::wording::number;
 use super::{INNER_RING_MESH, OUTER_RING_MESH};
+use crate::field::wording::number;
 use crate::scene::{DefectRing, DeviationScene, Scene};
 
 /// Everything that does not go together with a ring from a file.

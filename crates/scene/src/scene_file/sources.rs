@@ -5,9 +5,10 @@ use std::ops::Range;
 
 use super::finding::{Finding, Remedy};
 use super::problem::{Place, Problem, SceneError, place_in_file};
-use super::wording::{list, shown};
-use super::{foreign, named, reading, suggest, wording};
+use super::{named, reading, suggest};
 use crate::catalogue;
+use crate::field::wording::{list, shown};
+use crate::field::{foreign, wording};
 use crate::fields::tree::{self, Content, Key, Node, Source, Step, steps};
 use crate::fields::value::Value;
 use crate::fields::{Shape, Spot, names_in, spot};

@@ -13,10 +13,10 @@
 use std::path::Path;
 
 use super::problem::{Problem, SceneError, place_in_file};
-use super::sources::Sources;
-use super::wording::{number, shown};
+use super::sources::{Kind, Sources};
 use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
 use crate::deviation::{FormScene, PointScene};
+use crate::field::wording::{number, shown};
 use crate::housing::HousingScene;
 use crate::machine::MachineScene;
 use crate::mesh_text;
@@ -95,6 +95,25 @@ fn read_machine(machine: &mut MachineScene, folder: &Path, sources: &Sources) ->
     }
     *machine = std::mem::take(machine).before(MachineScene::read(&file)?);
     Ok(())
+}
+
+/// The file of a machine.
+const FILE: Kind = Kind {
+    noun: "a machine",
+    example: "`(mass_kg: 10, sensor: (rate_hz: 25600))`",
+    for_fields_of_scenes: Some(""),
+};
+
+impl MachineScene {
+    /// Reads the machine in a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is no machine.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let text = super::load(path)?;
+        let (machine, _) = super::read_as(super::without_mark(&text), &path.display().to_string(), &FILE)?;
+        Ok(machine)
+    }
 }
 
 impl Scene {
