@@ -24,9 +24,9 @@ pub use crate::field::wording::{list, shown};
 use crate::fields::tree::Node;
 use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
+use crate::reading::faults;
 use crate::reading::load::load;
 use crate::reading::sources::{SCENE, Sources};
-use crate::reading::faults;
 pub use crate::reading::{
     Kind, Place, Problem, SceneError, nearest, offset, place_in_file, read_as, without_mark,
 };
