@@ -25,7 +25,11 @@ pub fn parse<C: Parser>() -> C {
         let words: Vec<String> = std::env::args().skip(1).collect();
         let mistake = error.use_stderr();
         let tip = ours(&error).or_else(|| example(&C::command(), &words));
-        let plain = without_trailing(error);
+        let mut plain = without_trailing(error);
+        if tip.as_ref().is_some_and(|tip| tip.starts_with("try: ")) {
+            plain.remove(ContextKind::SuggestedArg);
+            plain.remove(ContextKind::SuggestedSubcommand);
+        }
         match harmless(&plain.render().to_string()) {
             Cow::Borrowed(_) => drop(plain.print()),
             // What was typed is repeated, and may be the name of a file of others.

@@ -1,10 +1,7 @@
 //! Advice on fields of a scene: for a run that went wrong only changes that the scene does not have yet, and before
 //! a run on values that no solid has.
 
-use crate::scene::{MaterialScene, PocketWalls, Scene};
-
-/// Largest coefficient of friction that a scene may have.
-pub(crate) const MOST_FRICTION: f64 = 2.0;
+use crate::scene::{MOST_FRICTION, MaterialScene, PocketWalls, Scene};
 
 /// What guides a cage that has left the bearing, as the object of "take".
 pub fn holds_cage(scene: &Scene) -> String {

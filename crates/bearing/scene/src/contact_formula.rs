@@ -43,7 +43,7 @@ pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
 /// Length of cylinders [m] that let the raceways approach each other at the most loaded place as balls would; at
 /// most that of their rings.
 pub(crate) fn length_of_balls(scene: &ResolvedScene) -> f64 {
-    let load = STRIBECK * scene.load / scene.rollers as f64;
+    let load = STRIBECK * scene.written.operation.load_n / scene.rollers as f64;
     let wanted = ContactLaw::of(scene, ContactLawKind::Ball).both(load);
     let length = LineContacts::of(scene).load(wanted).map(|(line_load, _)| load / line_load);
     length.map_or(scene.thickness, |length| length.min(scene.thickness))

@@ -2,10 +2,8 @@
 
 use stribeck_theory::duty::{Course, Duty};
 
+pub use crate::scene::LONGEST_RUN_S;
 use crate::scene::{OperationScene, ProfileScene, Scene};
-
-/// Longest run that a scene may ask for [s].
-pub const LONGEST_RUN_S: f64 = 3600.0;
 
 impl Scene {
     /// Speeds and load over time. A table that was not read counts as the field that it varies.

@@ -37,7 +37,8 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | Which fields has a scene, and how is one declared? | [`scene`], in the table of [`fields`] |
+//! | What is a field, and how is one declared? | [`field`] |
+//! | Which fields has a scene? | [`scene`], in the table of [`fields`] |
 //! | What is checked when a scene is read? | [`scene_file`] |
 //! | Which spalls are cut into the mesh? | [`Scene::grooves`] |
 //! | What is that in SI? | [`resolved`]; surfaces that are not round [`deviation`] |
@@ -48,25 +49,23 @@
 pub mod advice;
 pub mod catalogue;
 mod contact_formula;
-pub mod deviation;
 pub mod dice;
 pub mod duty;
 pub mod ensemble;
 mod faults;
+pub mod field;
 pub mod fields;
-pub mod housing;
-pub mod machine;
 pub mod mesh_text;
 mod narrow;
 pub mod paper;
 mod quality;
+mod reading;
 pub mod resolved;
-pub mod ring_mesh;
 pub mod scene;
 pub mod scene_file;
 mod theory;
 
-pub use scene::Scene;
+pub use scene::{Scene, deviation, housing, machine};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

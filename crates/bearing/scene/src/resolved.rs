@@ -100,8 +100,6 @@ pub struct ResolvedScene {
     pub stiffness_damping: f64,
     /// Structural damping, if there is some.
     pub structural_damping: Option<DampedBand>,
-    /// Load on the adapter, downwards [N].
-    pub load: f64,
     /// Gravity, downwards [m/s²].
     pub gravity: f64,
     /// Mass of the housing whose weight a foundation carries [kg].
@@ -261,7 +259,6 @@ impl ResolvedScene {
             film: scene.film.as_ref().map(oil),
             stiffness_damping: 1e-9 * scene.solver.stiffness_damping_ns,
             structural_damping: scene.solver.structural_damping.as_ref().map(DampedBand::of),
-            load: scene.operation.load_n,
             gravity: scene.operation.gravity_m_s2,
             on_foundation: scene.housing.on_foundation_kg(b),
             duration: 1e-3 * scene.solver.duration_ms,

@@ -2,28 +2,31 @@
 
 mod bearing;
 mod contact;
+pub mod deviation;
+pub mod housing;
+pub mod machine;
 mod mesh;
 mod operation;
 mod output;
 mod solver;
 
-use crate::fields::{group, words};
+use crate::{group, words};
 
-pub use crate::deviation::DeviationScene;
-pub use crate::housing::HousingScene;
-pub use crate::ring_mesh::RingMeshScene;
 pub use bearing::{
     AdapterScene, Assumed, BearingScene, CageScene, DefectRing, DefectScene, ElementKind, MaterialScene,
     PocketWalls, Quality, RollerProfile,
 };
+pub(crate) use contact::MOST_FRICTION;
 pub use contact::{
     ContactFormula, ContactInterpolation, ContactMethod, ContactPasses, ContactScene, ContactSurface,
     FilmScene, ResistanceScene,
 };
-pub use mesh::{GradingScene, MeshScene, RollerCopies};
+pub use deviation::DeviationScene;
+pub use housing::HousingScene;
+pub use mesh::{GradingScene, MeshScene, RingMeshScene, RollerCopies};
 pub use operation::{HarmonicScene, OperationScene, ProfileScene, RampScene, RotatingLoadScene};
-pub use output::{FramesScene, GuardsScene, OutputScene, SensorScene};
-pub use solver::{DampedBody, DampingFrame, SolverScene, Start, StructuralDampingScene};
+pub use output::{FramesScene, GuardsScene, OutputScene, RecordsScene, SensorScene};
+pub use solver::{DampedBody, DampingFrame, LONGEST_RUN_S, SolverScene, Start, StructuralDampingScene};
 
 group! {
     /// A complete scene. Every field has a default; `()` in a file is the paper's bearing in oil, as

@@ -146,8 +146,8 @@ const SAFE: f64 = 1.0;
 impl ResolvedScene {
     /// What to say of a load at which steel would yield: the largest of the run exceeds the static rating.
     pub fn overload(&self) -> Option<String> {
-        let (rating_n, [_, most]) = (self.written.static_rating_n(), self.duty.load_range_n(self.duration));
-        let (load_n, safety) = (most.max(self.load), rating_n / most.max(self.load));
+        let (rating_n, [_, load_n]) = (self.written.static_rating_n(), self.duty.load_range_n(self.duration));
+        let safety = rating_n / load_n;
         (safety < SAFE).then(|| {
             format!(
                 "the load of {load_n:.0} N exceeds the static rating of this bearing, {rating_n:.0} N by ISO 76 \

@@ -187,7 +187,7 @@ impl Plan {
             advice: Vec::new(),
         };
         plan.advise(scene);
-        let support_n = scene.load;
+        let support_n = scene.written.operation.load_n;
         if let Ok(curve) = prediction.static_curve(scene, support_n) {
             let least_n = rolling::least_support_n(scene, &curve, support_n);
             plan.advice.extend(rolling::warnings(support_n, least_n, &KinematicsFinding::default()));

@@ -31,7 +31,7 @@ const FORTY: [(&str, Then); 47] = [
     ("stribeck demo --help", Works("ten seconds")),
     // A scene.
     ("stribeck bearings 6205", Works("BPFO 3.5848")),
-    ("stribeck bearing NU205", Works("BPFO")),
+    ("stribeck bearing NU205", Works("rollers of 7.5 mm")),
     ("stribeck 6205", Answers("try: stribeck bearings NAME")),
     ("stribeck new mine.ron --bearing 6205 --defect outer", Works("run it: stribeck simulate mine.ron")),
     (r"printf 'NU 205\n2000\n1200\ninner\n1.5\n' | stribeck new piped.ron", Works("piped.ron")),
@@ -45,7 +45,7 @@ const FORTY: [(&str, Then); 47] = [
     ("stribeck plan mine.ron --no-trial", Works("BPFO 89.62 Hz")),
     // Its run.
     ("stribeck simulate mine.ron", Works("report: runs/mine/report.html")),
-    ("stribeck run mine.ron", Answers("`runs/mine`")),
+    ("stribeck run mine.ron", Works("which is kept")),
     ("stribeck simulat mine.ron", Answers("'simulate'")),
     ("stribeck mine.ron", Answers("try: stribeck simulate SCENE.ron")),
     ("stribeck simulate 6205", Answers("`stribeck new --bearing 6205` writes a scene")),

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::tree::{Content, join};
+use super::value::Value;
 use super::{Field, Group, Shape, Spot};
 use crate::scene::Scene;
 
@@ -111,7 +112,8 @@ fn line(spot: Spot, group: &'static Group, field: &'static Field) -> String {
     }
     let mut about = sentence(field.about);
     if let Some((range, unit)) = at.range {
-        let words = range.in_words(unit, &Scene::default()).replace("more than 0, at most ", "up to ");
+        let words =
+            range.in_words(unit, &Scene::default().write()).replace("more than 0, at most ", "up to ");
         line += &format!(", {words}");
         // The range has its unit, which the sentence says in brackets.
         let unit = if unit.is_empty() { "-" } else { unit };

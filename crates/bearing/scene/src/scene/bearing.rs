@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fields::{group, words};
+use crate::{group, words};
 
 group! {
     /// Rings and rolling elements (paper, Table 1).

@@ -1,7 +1,9 @@
 //! Contact and oil: method, penalty, damping, friction, and the lubricant.
 
-use crate::advice::MOST_FRICTION;
-use crate::fields::{group, words};
+use crate::{group, words};
+
+/// Largest coefficient of friction that a scene may have.
+pub(crate) const MOST_FRICTION: f64 = 2.0;
 
 group! {
     /// Contact method and laws.

@@ -1,8 +1,8 @@
 //! The operating point: load, speed, gravity, and the courses of load and speed over time.
 
+use super::housing;
 use super::solver::LONGEST_MS;
-use crate::fields::{group, words};
-use crate::housing;
+use crate::{group, words};
 
 const MOST_SPEED_RPM: f64 = 100_000.0;
 const MOST_LOAD_N: f64 = 1e9;

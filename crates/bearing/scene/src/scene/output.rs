@@ -1,7 +1,7 @@
 //! Sampling, sensors and frames of a run, and the limits of its guards.
 
 use super::solver::LONGEST_MS;
-use crate::fields::group;
+use crate::group;
 
 /// At places around the ring of the paper's bearing.
 fn default_sensors() -> Vec<SensorScene> {
@@ -65,5 +65,17 @@ group! {
         pub area_stop_percent: f64 = 20.0, within(0.0, 99.0);
         /// Time for which no roller may carry anything before the run carries a warning [ms].
         pub unsupported_warning_ms: f64 = 0.5, positive(LONGEST_MS);
+    }
+}
+
+group! {
+    /// Records of the force of all rolling elements on the outer ring, behind a path of resonances that the
+    /// scene's hash draws, in white noise: one for each level of the noise. `summary.json` has their
+    /// signatures.
+    pub struct RecordsScene {
+        /// Samples a second of the record [Hz]; at most those of the run.
+        pub rate_hz: f64 = 25_600.0, up_to(100.0, "output.interval_us", |us| 1e6 / us);
+        /// Power of the noise over that of the rest [dB], a record each.
+        pub noise_db: Vec<f64> = vec![-20.0, -10.0, 0.0], within(-100.0, 60.0);
     }
 }

@@ -1,7 +1,9 @@
 //! Time integration: duration, time step, damping, and how a run starts.
 
-use crate::duty::LONGEST_RUN_S;
-use crate::fields::{group, words};
+use crate::{group, words};
+
+/// Longest run that a scene may ask for [s].
+pub const LONGEST_RUN_S: f64 = 3600.0;
 
 /// Longest run [ms].
 pub(super) const LONGEST_MS: f64 = 1e3 * LONGEST_RUN_S;

@@ -1,9 +1,9 @@
 //! The meaning of a scene: ranges first, then relations between fields.
 
-use super::finding::Finding;
-use super::problem::{MOST_TOLD, SceneError};
-use super::sources::Sources;
-use super::{deviations, exclusions, extent, geometry, operation, ranges, ring_meshes};
+use super::{deviations, exclusions, extent, geometry, names, operation, ring_meshes};
+use crate::reading::finding::Finding;
+use crate::reading::problem::{MOST_TOLD, SceneError};
+use crate::reading::sources::Sources;
 use crate::scene::Scene;
 
 /// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
@@ -17,7 +17,7 @@ pub(crate) fn check(scene: &Scene, sources: &Sources) -> Result<(), SceneError> 
 
 /// Relations only of numbers that are in range.
 fn findings(scene: &Scene) -> Vec<Finding> {
-    let found = ranges::findings(scene);
+    let found = names::findings(scene);
     if !found.is_empty() {
         return found;
     }

@@ -69,41 +69,54 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
 pub(super) fn alone(bearing: &BearingScene, given: &[String]) -> Option<String> {
     let of_bearing = |path: &String| path.strip_prefix("bearing.").map(str::to_owned);
     let is_named = catalogue::parse(&bearing.designation).is_ok_and(|known| known.name != PAPER);
-    let says_no_more = || given.iter().filter_map(of_bearing).all(|field| BESIDE_A_NAME.contains(&&*field));
-    (is_named && says_no_more()).then(|| bearing.designation.clone())
+    let gives_dimensions = || given.iter().filter_map(of_bearing).any(|field| OF_A_NAME.contains(&&*field));
+    (is_named && !gives_dimensions()).then(|| bearing.designation.clone())
 }
 
-/// Fields of a bearing that a scene may give beside its name.
-const BESIDE_A_NAME: [&str; 9] = [
-    "designation",
-    "element",
-    "rollers",
-    "quality",
-    "diameter_variation_um",
-    "diameter_seed",
-    "roller_profile",
-    "first_roller_deg",
-    "clearance_change_um",
+/// Fields of a bearing that follow from its name; all others may stand beside it.
+const OF_A_NAME: [&str; 11] = [
+    "outer_race_diameter_mm",
+    "outer_ring_thickness_mm",
+    "inner_race_diameter_mm",
+    "inner_ring_thickness_mm",
+    "roller_diameter_mm",
+    "thickness_mm",
+    "pitch_mm",
+    "bore_mm",
+    "outside_mm",
+    "width_mm",
+    "assumed",
 ];
 
 /// A bearing of the catalogue with what a scene says beside its name.
 fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String]) -> BearingScene {
     let written = |field: &str| given.iter().any(|path| path.strip_prefix("bearing.") == Some(field));
-    let rollers = if written("rollers") { said.rollers } else { of_name.rollers };
-    BearingScene {
-        rollers,
-        quality: said.quality,
-        diameter_variation_um: said.diameter_variation_um,
-        diameter_seed: said.diameter_seed,
-        roller_profile: said.roller_profile,
-        first_roller_deg: if written("first_roller_deg") {
-            said.first_roller_deg
-        } else {
-            first_roller(rollers)
-        },
-        clearance_change_um: if written("clearance_change_um") { said.clearance_change_um } else { 0.0 },
-        ..of_name
+    let mut bearing = BearingScene {
+        designation: of_name.designation,
+        element: of_name.element,
+        outer_race_diameter_mm: of_name.outer_race_diameter_mm,
+        outer_ring_thickness_mm: of_name.outer_ring_thickness_mm,
+        inner_race_diameter_mm: of_name.inner_race_diameter_mm,
+        inner_ring_thickness_mm: of_name.inner_ring_thickness_mm,
+        roller_diameter_mm: of_name.roller_diameter_mm,
+        thickness_mm: of_name.thickness_mm,
+        pitch_mm: None,
+        bore_mm: None,
+        outside_mm: None,
+        width_mm: None,
+        assumed: of_name.assumed,
+        ..said.clone()
+    };
+    if !written("rollers") {
+        bearing.rollers = of_name.rollers;
     }
+    if !written("first_roller_deg") {
+        bearing.first_roller_deg = first_roller(bearing.rollers);
+    }
+    if !written("clearance_change_um") {
+        bearing.clearance_change_um = 0.0;
+    }
+    bearing
 }
 
 /// A designation as the name of a folder.
@@ -349,6 +362,19 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
 /// Angle of roller 1 [°]: as far before the middle of the load zone, in pitches, as in the paper's bearing.
 pub(super) fn first_roller(rollers: usize) -> f64 {
     tidy(90.0 + 4.0 * 24.0 / rollers as f64)
+}
+
+impl Scene {
+    /// Lets the record of a machine have no more samples a second than the run, where the user gave it no rate;
+    /// `given` has the paths of written fields.
+    pub(crate) fn record_no_faster(&mut self, given: &[String]) {
+        let most_hz = 1e6 / self.output.interval_us;
+        let HousingScene::Machine(machine) = &mut self.housing else { return };
+        // A file that is read later has a rate of its own.
+        if machine.file.is_empty() && !given.iter().any(|path| path == "housing.sensor.rate_hz") {
+            machine.sensor.rate_hz = machine.sensor.rate_hz.min(most_hz);
+        }
+    }
 }
 
 /// A dimension to a few micrometres.

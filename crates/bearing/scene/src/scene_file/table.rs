@@ -12,15 +12,16 @@
 
 use std::path::Path;
 
-use super::problem::{Problem, SceneError, place_in_file};
-use super::sources::Sources;
-use super::wording::{number, shown};
-use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
+use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use crate::deviation::{FormScene, PointScene};
+use crate::field::wording::{number, shown};
 use crate::housing::HousingScene;
 use crate::machine::MachineScene;
 use crate::mesh_text;
 use crate::mesh_text::bytes_of;
+use crate::reading::problem::{Problem, SceneError, place_in_file};
+use crate::reading::ranges;
+use crate::reading::sources::{Kind, Sources};
 use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
@@ -95,6 +96,37 @@ fn read_machine(machine: &mut MachineScene, folder: &Path, sources: &Sources) ->
     }
     *machine = std::mem::take(machine).before(MachineScene::read(&file)?);
     Ok(())
+}
+
+/// The file of a machine.
+const FILE: Kind = Kind {
+    noun: "a machine",
+    example: "`(mass_kg: 10, sensor: (rate_hz: 25600))`",
+    for_fields_of_scenes: Some(""),
+};
+
+impl MachineScene {
+    /// Reads the machine in a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is no machine.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let text = crate::reading::load::load(path)?;
+        let (machine, _) = super::read_as(super::without_mark(&text), &path.display().to_string(), &FILE)?;
+        Ok(machine)
+    }
+}
+
+impl Scene {
+    /// The texts of all its mesh files.
+    pub fn mesh_texts(&self) -> impl Iterator<Item = &str> {
+        let housing = match &self.housing {
+            HousingScene::Mesh(housing) => Some(housing.text.as_str()),
+            _ => None,
+        };
+        let rings = [&self.outer_ring_mesh, &self.inner_ring_mesh].into_iter().flatten();
+        housing.into_iter().chain(rings.map(|ring| ring.text.as_str()))
+    }
 }
 
 /// Inserts the content of the mesh `file` of the group `path` into `text`, unless it is there.

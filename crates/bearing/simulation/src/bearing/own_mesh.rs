@@ -10,8 +10,7 @@ use stribeck_scene::{
     housing::{HousingScene, MeshHousingScene},
     mesh_text,
     resolved::ResolvedScene,
-    ring_mesh::RingMeshScene,
-    scene::{DefectRing, Scene},
+    scene::{DefectRing, RingMeshScene, Scene},
 };
 
 use crate::error::Error;

@@ -62,8 +62,9 @@ impl Compliances {
         structure: &mut Structure,
         raceway: &[[f64; 2]],
     ) -> Result<Self, Error> {
-        let most = OVERLOAD * scene.static_load().map_or(scene.load, |load| load.max_roller_n());
-        let size = Size { scene, most: most.clamp(1.0, OVERLOAD * scene.load.max(1.0)) };
+        let most =
+            OVERLOAD * scene.static_load().map_or(scene.written.operation.load_n, |load| load.max_roller_n());
+        let size = Size { scene, most: most.clamp(1.0, OVERLOAD * scene.written.operation.load_n.max(1.0)) };
         let [ro, ri] = [scene.outer_contact_radius(), scene.inner_contact_radius()];
         let beside = beside_grooves(scene);
         let outer = outer_patch(&size, extraction, structure, raceway, beside);

@@ -75,7 +75,14 @@ fn reduce(
     let modes = structure.squares().len();
     let padded = modes.next_multiple_of(GROUP);
     let rollers = raceway::roller_forces(from, count);
-    let loads = Loads::of(&structure, &preload, &nodes, springs.as_ref(), &rollers, (scene.load, padded));
+    let loads = Loads::of(
+        &structure,
+        &preload,
+        &nodes,
+        springs.as_ref(),
+        &rollers,
+        (scene.written.operation.load_n, padded),
+    );
     let dents = raceway::dents(from, &mut structure, rollers);
     let between_rollers = raceway::between_rollers(&nodes, &dents, scene.rollers);
     let outer = raceway::without_dents(from, &dents);

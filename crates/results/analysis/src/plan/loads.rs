@@ -41,7 +41,7 @@ impl Loads {
             loaded: shared.loaded_rollers(),
             pressure_pa: scene.pressure_pa(largest_n),
             static_rating_n: scene.written.static_rating_n(),
-            load_n: most.max(scene.load),
+            load_n: most.max(scene.written.operation.load_n),
         })
     }
 

@@ -7,8 +7,7 @@ use stribeck_diagnosis::words::numbers::{kilonewtons, significant};
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::ring_mesh::RingMeshScene;
-use stribeck_scene::scene::{DefectRing, ModelScene};
+use stribeck_scene::scene::{DefectRing, ModelScene, RingMeshScene};
 use stribeck_theory::catalogue::Element;
 
 /// The sentence under the title.

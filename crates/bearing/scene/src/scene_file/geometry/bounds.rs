@@ -1,6 +1,6 @@
 //! Ends of the ranges that messages propose.
 
-use crate::scene_file::wording::{number, round_down, round_up};
+use crate::field::wording::{number, round_down, round_up};
 
 /// Significant digits of the ends of a range, and their relative rounding error.
 const DIGITS: i32 = 5;

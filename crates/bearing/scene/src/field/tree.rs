@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
+use super::foreign;
 use super::{Field, Group, Shape};
-use crate::scene_file::foreign;
 
 /// Deeper nesting than this is no scene.
 const MAX_DEPTH: usize = 64;

@@ -3,9 +3,9 @@
 //! The inner ring turns about a fixed centre, and the load pushes the housing towards it, as on a wheel or
 //! under the paper's adapter. A load on the shaft in a stationary housing is the same seen from the shaft.
 
-use crate::fields::{group, words};
-use crate::machine::MachineScene;
-use crate::scene::BearingScene;
+use super::BearingScene;
+use super::machine::MachineScene;
+use crate::{group, words};
 
 words! {
     /// The housing, which holds the outer ring and takes the load.

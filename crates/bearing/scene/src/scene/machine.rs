@@ -5,18 +5,10 @@
 //! what they add does not act back on the bearing, so that the record of the sensor follows from the force on
 //! the housing after the run (`analysis::machine`).
 
-use std::path::Path;
-
-use crate::fields::group;
-use crate::fields::value::Value;
-use crate::housing::{HousingScene, RigidHousingScene};
-use crate::scene::{BearingScene, Scene};
-use crate::scene_file::{self, Kind, SceneError, without_mark};
-
-/// As many samples a second as the run has [Hz].
-fn most_rate_hz(scene: &Scene) -> f64 {
-    1e6 / scene.output.interval_us
-}
+use super::BearingScene;
+use super::housing::RigidHousingScene;
+use crate::field::value::Value;
+use crate::group;
 
 group! {
     /// A machine about the bearing: a heavy housing that holds a ring that does not deform, a linear path from
@@ -95,7 +87,7 @@ group! {
     /// A mounted accelerometer and its recorder. By default one of 100 mV/g on a stud at 24 bits.
     pub struct MachineSensorScene {
         /// Samples a second of the record [Hz]; at most those of the run.
-        pub rate_hz: f64 = 25_600.0, up_to(100.0, most_rate_hz);
+        pub rate_hz: f64 = 25_600.0, up_to(100.0, "output.interval_us", |us| 1e6 / us);
         /// Resonance of the mounted sensor [Hz].
         pub resonance_hz: f64 = 25_000.0, within(100.0, 1e6);
         /// Quality factor of the resonance [-].
@@ -108,26 +100,6 @@ group! {
         pub bits: usize = 24, within(2.0, 32.0);
     }
 }
-
-impl Scene {
-    /// Lets the record of a machine have no more samples a second than the run, where the user gave it no rate;
-    /// `given` has the paths of written fields.
-    pub(crate) fn record_no_faster(&mut self, given: &[String]) {
-        let most_hz = most_rate_hz(self);
-        let HousingScene::Machine(machine) = &mut self.housing else { return };
-        // A file that is read later has a rate of its own.
-        if machine.file.is_empty() && !given.iter().any(|path| path == "housing.sensor.rate_hz") {
-            machine.sensor.rate_hz = machine.sensor.rate_hz.min(most_hz);
-        }
-    }
-}
-
-/// The file of a machine.
-const FILE: Kind = Kind {
-    noun: "a machine",
-    example: "`(mass_kg: 10, sensor: (rate_hz: 25600))`",
-    for_fields_of_scenes: Some(""),
-};
 
 /// Outside diameter [mm] and mass [kg] of the housing to which the usual values belong.
 const USUAL: (f64, f64) = (52.0, 10.0);
@@ -155,19 +127,9 @@ fn outside_mm(bearing: &BearingScene) -> f64 {
 }
 
 impl MachineScene {
-    /// Reads the machine in a file.
-    ///
-    /// # Errors
-    /// When it cannot be read, or is no machine.
-    pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = scene_file::load(path)?;
-        let (machine, _) = scene_file::read_as(without_mark(&text), &path.display().to_string(), &FILE)?;
-        Ok(machine)
-    }
-
     /// Its text, without what has its default.
     pub fn to_ron(&self) -> String {
-        self.write().to_ron(Self::SHAPE, &crate::fields::Group::omits)
+        self.write().to_ron(Self::SHAPE, &crate::field::Group::omits)
     }
 
     /// What this machine says, before what `other` says.
@@ -242,6 +204,7 @@ pub fn third_octaves(lowest_hz: f64, highest_hz: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{HousingScene, Scene};
     use stribeck_testing::{Scratch, assert_refused};
 
     const BASE: &str = "bearing: \"6205\", model: reduced(), film: None, defect: None";

@@ -4,22 +4,16 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::dice::Dice;
-use crate::fields::{group, words};
-use crate::scene::Scene;
+use crate::{group, words};
 
 /// Facets that a hollow needs at least.
 pub const HOLLOW_FACETS: f64 = 4.0;
-
-/// Number of the last roller.
-fn rollers(scene: &Scene) -> f64 {
-    scene.bearing.rollers as f64
-}
 
 group! {
     /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
     pub struct DeviationScene {
         /// The surface.
-        pub on: RollingSurface = RollingSurface::Outer, up_to(1.0, rollers);
+        pub on: RollingSurface = RollingSurface::Outer, up_to(1.0, "bearing.rollers", |rollers| rollers);
         /// Angle of its middle at the start [°], counter-clockwise from the x axis, about the centre of the
         /// body.
         pub angle_deg: f64 = 90.0, within(-360.0, 360.0);
@@ -403,6 +397,7 @@ fn random_waves(roughness: &RoughnessScene, radius: f64, at: f64) -> Vec<Wave> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     fn on_outer(form: FormScene) -> Relief {
         let deviation = DeviationScene { form, ..DeviationScene::default() };

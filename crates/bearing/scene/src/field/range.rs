@@ -1,7 +1,8 @@
 //! Intervals of valid numbers.
 
-use crate::scene::Scene;
-use crate::scene_file::wording::number;
+use super::tree::Node;
+use super::value::Value;
+use super::wording::number;
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Limits {
@@ -22,8 +23,16 @@ pub(crate) struct Range {
     pub low_included: bool,
     pub high: f64,
     pub high_included: bool,
-    /// Upper end that other fields of the scene set.
-    pub most: Option<fn(&Scene) -> f64>,
+    /// Upper end that another field of the scene sets.
+    pub most: Option<Most>,
+}
+
+/// An upper end that follows from another field.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Most {
+    /// Path of that field.
+    pub path: &'static str,
+    pub of: fn(f64) -> f64,
 }
 
 impl Limits {
@@ -45,11 +54,12 @@ impl Limits {
 }
 
 impl Range {
-    fn high(self, scene: &Scene) -> f64 {
-        self.most.map_or(self.high, |most| most(scene))
+    fn high(self, scene: &Node) -> f64 {
+        let most = |most: Most| scene.get(most.path).and_then(f64::read).map_or(f64::INFINITY, most.of);
+        self.most.map_or(self.high, most)
     }
 
-    pub(crate) fn contains(self, x: f64, scene: &Scene) -> bool {
+    pub(crate) fn contains(self, x: f64, scene: &Node) -> bool {
         let high = self.high(scene);
         let above = if self.low_included { x >= self.low } else { x > self.low };
         let below = if self.high_included { x <= high } else { x < high };
@@ -57,7 +67,7 @@ impl Range {
     }
 
     /// `3 to 400 mm`.
-    pub(crate) fn in_words(self, unit: &str, scene: &Scene) -> String {
+    pub(crate) fn in_words(self, unit: &str, scene: &Node) -> String {
         let (low, high) = (number(self.low), number(self.high(scene)));
         let words = match (self.low_included, self.high_included) {
             (true, true) => format!("{low} to {high} {unit}"),
