@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use stribeck_theory::catalogue::{self, ADVICE, Boundary, CatalogueBearing, Element, plain};
 
 use crate::group;
+use crate::reading::{self, without_mark};
 use crate::scene::{Assumed, BearingScene, ElementKind, Scene};
-use crate::scene_file::{self, without_mark};
 
 /// Name of the file in either folder.
 const NAME: &str = "bearings.ron";
@@ -40,8 +40,8 @@ group! {
 }
 
 /// The file.
-const FILE: scene_file::Kind =
-    scene_file::Kind { noun: "a list of bearings", example: EXAMPLE, for_fields_of_scenes: Some("") };
+const FILE: reading::Kind =
+    reading::Kind { noun: "a list of bearings", example: EXAMPLE, for_fields_of_scenes: Some("") };
 
 /// Example of such a file.
 const EXAMPLE: &str = "[(name: \"mine\", element: roller, elements: 16, diameter_mm: 9.0, pitch_mm: 68.5, \
@@ -210,9 +210,8 @@ fn paths() -> Vec<PathBuf> {
 fn read(path: &Path) -> Result<Vec<CatalogueBearing>, String> {
     let shown = path.display();
     let text = std::fs::read_to_string(path).map_err(|why| format!("`{shown}` cannot be read: {why}"))?;
-    let (entries, _): (Vec<Entry>, _) =
-        scene_file::read_as(without_mark(&text), &shown.to_string(), &FILE)
-            .map_err(|why| format!("`{shown}` is no list of bearings, such as `{EXAMPLE}`:\n{why}"))?;
+    let (entries, _): (Vec<Entry>, _) = reading::read_as(without_mark(&text), &shown.to_string(), &FILE)
+        .map_err(|why| format!("`{shown}` is no list of bearings, such as `{EXAMPLE}`:\n{why}"))?;
     entries.into_iter().map(|entry| entry.bearing(path)).collect()
 }
 

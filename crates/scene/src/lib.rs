@@ -59,6 +59,7 @@ pub mod mesh_text;
 mod narrow;
 pub mod paper;
 mod quality;
+mod reading;
 pub mod resolved;
 pub mod scene;
 pub mod scene_file;

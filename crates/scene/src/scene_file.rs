@@ -4,23 +4,17 @@
 //! are errors that show the line, the field, the value, the allowed ones and a remedy. Missing fields take
 //! their defaults, which [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
-mod check;
 mod deviations;
 mod dialect;
 mod exclusions;
 mod extent;
-mod finding;
 mod geometry;
-mod load;
 mod named;
+mod names;
 mod operation;
+mod overrides;
 mod own;
-mod problem;
-mod ranges;
-mod reading;
 mod ring_meshes;
-mod sources;
-mod suggest;
 mod table;
 
 use std::path::Path;
@@ -29,14 +23,16 @@ pub use crate::field::wording::{list, shown};
 use crate::fields::tree::Node;
 use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
+use crate::reading::faults;
+use crate::reading::finding::Finding;
+use crate::reading::load::load;
+use crate::reading::problem::MOST_TOLD;
+use crate::reading::sources::{SCENE, Sources};
+pub use crate::reading::{
+    Kind, Place, Problem, SceneError, nearest, offset, place_in_file, read_as, without_mark,
+};
 use crate::scene::Scene;
-use check::check;
-pub(crate) use load::load;
-use problem::MOST_TOLD;
-pub use problem::{Place, Problem, SceneError, offset, place_in_file};
-pub use sources::Kind;
-use sources::{SCENE, Sources, written_by};
-pub use suggest::nearest;
+use overrides::written_by;
 
 /// Paths of fields that several checks name.
 const OUTER_RING_MESH: &str = "outer_ring_mesh";
@@ -94,6 +90,32 @@ impl Scene {
     pub fn validate(&self) -> Result<(), SceneError> {
         check(self, &Sources::of_scene(self))
     }
+}
+
+/// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
+fn check(scene: &Scene, sources: &Sources) -> Result<(), SceneError> {
+    let found = findings(scene);
+    if found.is_empty() {
+        return Ok(());
+    }
+    Err(SceneError::new(found.into_iter().take(MOST_TOLD).map(|finding| sources.problem(finding)).collect()))
+}
+
+/// Relations only of numbers that are in range.
+fn findings(scene: &Scene) -> Vec<Finding> {
+    let found = names::findings(scene);
+    if !found.is_empty() {
+        return found;
+    }
+    let rules = [
+        geometry::findings,
+        deviations::findings,
+        extent::findings,
+        exclusions::findings,
+        operation::findings,
+        ring_meshes::findings,
+    ];
+    rules.iter().flat_map(|findings| findings(scene)).collect()
 }
 
 /// A field of a scene file that the name of another bearing has replaced.
@@ -199,11 +221,6 @@ fn scene_of(sources: &Sources) -> Result<Scene, SceneError> {
     sources.scene().ok_or_else(|| Problem::new(too_large, sources.place("")).into())
 }
 
-/// Some editors write a byte order mark first, which RON does not accept.
-pub fn without_mark(text: &str) -> &str {
-    text.strip_prefix('\u{feff}').unwrap_or(text)
-}
-
 /// Paths of all fields in a tree.
 fn paths_in(tree: &Node) -> Vec<String> {
     tree.entries("").into_iter().map(|(path, ..)| path).collect()
@@ -218,7 +235,7 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     if name.is_some() {
         sources.open("bearing");
     }
-    let found = reading::faults(&sources.tree, Spot::ROOT, "", &sources);
+    let found = faults(&sources.tree, Spot::ROOT, "", &sources);
     if !found.is_empty() {
         return Err(SceneError::new(found));
     }
@@ -233,25 +250,6 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     sources.set_all(overrides)?;
     let has_name = name.is_some() || sources.is_named;
     complete(sources, (!has_name).then_some(given))
-}
-
-/// Reads the text of another file than a scene by the table of its fields: what it says, and where it says
-/// it.
-///
-/// # Errors
-/// Unknown and missing fields, values of the wrong type and numbers outside their range, with their places.
-pub fn read_as<T: Value>(text: &str, file: &str, kind: &'static Kind) -> Result<(T, Node), SceneError> {
-    let sources = Sources::of_text(text, file, kind)?;
-    let whole = Spot::of(T::SHAPE);
-    let mut found = reading::faults(&sources.tree, whole, "", &sources);
-    if found.is_empty() {
-        let outside = ranges::in_tree(&Scene::default().write(), &sources.tree, whole);
-        found = outside.into_iter().take(MOST_TOLD).map(|finding| sources.problem(finding)).collect();
-    }
-    match T::read(&sources.tree).filter(|_| found.is_empty()) {
-        Some(read) => Ok((read, sources.tree)),
-        None => Err(SceneError::new(found)),
-    }
 }
 
 /// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. Errors that further
@@ -269,7 +267,7 @@ pub fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(
 /// The error on a field name that no scene has; `None` for one that some scene has.
 pub fn unknown_field(path: &str) -> Option<Problem> {
     let nowhere = Place::Unwritten { file: String::new() };
-    spot(path, None).is_none().then(|| sources::unknown(path, nowhere))
+    spot(path, None).is_none().then(|| overrides::unknown(path, nowhere))
 }
 
 /// The error on a designation that yields no bearing.

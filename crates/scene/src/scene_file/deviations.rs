@@ -3,7 +3,6 @@
 
 use std::f64::consts::PI;
 
-use super::finding::{Finding, Remedy};
 use super::geometry::MAX_DEFECT_DEPTH_RATIO;
 use super::ring_meshes;
 use crate::deviation::{
@@ -11,6 +10,7 @@ use crate::deviation::{
 };
 use crate::faults::rolling_circle;
 use crate::field::wording::{number, round_down, round_up};
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::Scene;
 
 /// Steepest slope of a surface: cells under it lean as much, and keep nine tenths of their time step.

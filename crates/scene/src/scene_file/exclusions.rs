@@ -1,10 +1,10 @@
 //! Choices that exclude each other: two kinds of damping, oil over gentle edges, a sudden start of the
 //! reduced model, relieved rollers where there is a mesh; and bands and lists of damping that must not be empty.
 
-use super::finding::{Finding, Remedy};
 use crate::deviation::RollingSurface;
 use crate::faults::rolling_circle;
 use crate::field::wording::number;
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::{ContactFormula, DefectRing, ModelScene, RollerProfile, Scene, Start};
 use stribeck_theory::catalogue::Element;
 

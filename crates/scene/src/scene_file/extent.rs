@@ -3,9 +3,9 @@
 
 use std::f64::consts::PI;
 
-use super::finding::{Finding, Remedy};
 use crate::field::wording::number;
 use crate::housing::HousingScene;
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::{ModelScene, Scene};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.

@@ -8,9 +8,9 @@ mod housing;
 
 use std::f64::consts::PI;
 
-use super::finding::{Finding, Remedy};
 use super::named::length_in;
 use crate::field::wording::{number, round_down};
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::Scene;
 use bounds::{at_most, between, less_than, lower, more_than};
 use cage::{cage, places, pockets};

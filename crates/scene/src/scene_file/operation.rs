@@ -1,10 +1,11 @@
 //! Speeds and loads under which a scene cannot be run: directions that its housing does not take, a housing
 //! that cannot turn, and courses over time out of range.
 
-use super::finding::{Finding, Remedy};
-use super::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
+use super::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use crate::field::wording::{number, round_down, shown};
 use crate::housing::HousingScene;
+use crate::reading::finding::{Finding, Remedy};
+use crate::reading::ranges;
 use crate::scene::{ProfileScene, Scene};
 
 const HOUSING: &str = "housing";

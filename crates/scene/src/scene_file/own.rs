@@ -5,9 +5,9 @@
 //! Without them a scene has the paper's bearing, of which single dimensions may be changed a little.
 
 use super::named::{self, Surrounded, tidy};
-use super::problem::Problem;
-use super::sources::Sources;
 use crate::field::wording::number;
+use crate::reading::problem::Problem;
+use crate::reading::sources::Sources;
 use crate::scene::{Assumed, BearingScene, ElementKind, Scene};
 use stribeck_theory::catalogue::normal_clearance_mm;
 

@@ -1,9 +1,9 @@
 //! Relations of rings from files: their raceways are those of the files, so other fields must not change
 //! them.
 
-use super::finding::{Finding, Remedy};
 use super::{INNER_RING_MESH, OUTER_RING_MESH};
 use crate::field::wording::number;
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::{DefectRing, DeviationScene, Scene};
 
 /// Everything that does not go together with a ring from a file.

@@ -12,15 +12,16 @@
 
 use std::path::Path;
 
-use super::problem::{Problem, SceneError, place_in_file};
-use super::sources::{Kind, Sources};
-use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
+use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use crate::deviation::{FormScene, PointScene};
 use crate::field::wording::{number, shown};
 use crate::housing::HousingScene;
 use crate::machine::MachineScene;
 use crate::mesh_text;
 use crate::mesh_text::bytes_of;
+use crate::reading::problem::{Problem, SceneError, place_in_file};
+use crate::reading::ranges;
+use crate::reading::sources::{Kind, Sources};
 use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
@@ -110,7 +111,7 @@ impl MachineScene {
     /// # Errors
     /// When it cannot be read, or is no machine.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = super::load(path)?;
+        let text = crate::reading::load::load(path)?;
         let (machine, _) = super::read_as(super::without_mark(&text), &path.display().to_string(), &FILE)?;
         Ok(machine)
     }

@@ -11,9 +11,9 @@ mod written;
 use proptest::prelude::*;
 use stribeck_testing::{Scratch, assert_refused};
 
-use super::sources::SCENE;
 use super::{Place, Problem, SceneError, read_as};
 use crate::housing::{HousingScene, PedestalScene, RigidHousingScene};
+use crate::reading::sources::SCENE;
 use crate::scene::{
     BearingScene, ContactMethod, DampingFrame, HarmonicScene, ModelScene, PocketWalls, ProfileScene,
     RampScene, ReducedScene, RollerCopies, Scene, Start,
@@ -355,7 +355,7 @@ fn survives_a_line_of_many_mistakes() {
     let many = |item: &str| format!("(cage: (roller_offsets_um: [{}]))", item.repeat(100_000 / item.len()));
     for text in [many("x,"), many("99999,"), format!("({})", "a:1,".repeat(25_000))] {
         let why = parse(&text).expect_err("mistakes");
-        assert_eq!(why.problems().len(), super::problem::MOST_TOLD);
+        assert_eq!(why.problems().len(), crate::reading::problem::MOST_TOLD);
     }
 }
 

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use super::bounds::{NOTHING, less_than, lower, more_than, upper};
 use super::{INNER_RACE, OUTER_RACE, ROLLER, fewer_rollers, pitch_circle};
 use crate::field::wording::number;
+use crate::reading::finding::{Finding, Remedy};
 use crate::resolved::CageGeometry;
 use crate::scene::{CageScene, PocketWalls, Scene};
-use crate::scene_file::finding::{Finding, Remedy};
 
 /// The cage inside the gap between the rings.
 pub(super) fn cage(scene: &Scene) -> Option<Finding> {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::bounds::{at_most, lower};
 use super::{INNER_RACE, INNER_RING, OUTER_RACE, OUTER_RING};
 use crate::field::wording::{number, round_down, round_up};
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::{DefectRing, Scene};
-use crate::scene_file::finding::{Finding, Remedy};
 
 /// Below the floor of a defect this part of the ring must be left to carry the load.
 pub(in crate::scene_file) const MAX_DEFECT_DEPTH_RATIO: f64 = 0.6;

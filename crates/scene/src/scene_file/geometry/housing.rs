@@ -4,8 +4,8 @@ use super::bounds::{less_than, more_than};
 use super::{OUTER_RACE, OUTER_RING};
 use crate::field::wording::{number, round_up};
 use crate::housing::HousingScene;
+use crate::reading::finding::{Finding, Remedy};
 use crate::scene::Scene;
-use crate::scene_file::finding::{Finding, Remedy};
 
 /// Thinnest wall of a pedestal, as a part of the ring's outside radius.
 const LEAST_PEDESTAL: f64 = 0.02;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::problem::{Place, Problem, SceneError};
 use super::suggest;
-use crate::catalogue;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 /// A scene file holds some fifty numbers, and that of a run the mesh of a housing, too; more is something
 /// else.
@@ -66,7 +66,7 @@ fn advice(error: &std::io::Error, path: &Path) -> String {
 
 /// Whether a path is the name of a bearing, such as 6205.
 fn names_a_bearing(path: &Path) -> bool {
-    path.to_str().is_some_and(|name| !name.ends_with(".ron") && catalogue::parse(name).is_ok())
+    path.to_str().is_some_and(|name| !name.ends_with(".ron") && CatalogueBearing::parse(name).is_ok())
 }
 
 /// The scene file beside `path` whose name is most like it.

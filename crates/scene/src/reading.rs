@@ -1,17 +1,53 @@
 //! What the table of fields does not allow in a tree of values: unknown names, missing fields, values of the
 //! wrong type; and texts that are no tree.
 
+pub(crate) mod finding;
+pub(crate) mod load;
+pub(crate) mod problem;
+pub(crate) mod ranges;
+pub(crate) mod sources;
+pub(crate) mod suggest;
+
 use std::ops::Range;
 
-use super::problem::{MOST_TOLD, Problem};
-use super::sources::{Kind, Sources};
-use super::suggest;
-use crate::catalogue;
+use stribeck_theory::catalogue::CatalogueBearing;
+
 use crate::field::foreign;
 use crate::field::wording::{list, shown};
 use crate::fields::tree::{Broken, Content, Node, Source, Stop, join};
 use crate::fields::value::Value;
+use problem::MOST_TOLD;
+pub use problem::{Place, Problem, SceneError, offset, place_in_file};
+pub use sources::Kind;
+use sources::Sources;
+pub use suggest::nearest;
+
 use crate::fields::{Group, Shape, Spot, Words, spot};
+use crate::scene::Scene;
+
+/// Some editors write a byte order mark first, which RON does not accept.
+pub fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// Reads the text of another file than a scene by the table of its fields: what it says, and where it says
+/// it.
+///
+/// # Errors
+/// Unknown and missing fields, values of the wrong type and numbers outside their range, with their places.
+pub fn read_as<T: Value>(text: &str, file: &str, kind: &'static Kind) -> Result<(T, Node), SceneError> {
+    let sources = Sources::of_text(text, file, kind)?;
+    let whole = Spot::of(T::SHAPE);
+    let mut found = faults(&sources.tree, whole, "", &sources);
+    if found.is_empty() {
+        let outside = ranges::in_tree(&Scene::default().write(), &sources.tree, whole);
+        found = outside.into_iter().take(MOST_TOLD).map(|finding| sources.problem(finding)).collect();
+    }
+    match T::read(&sources.tree).filter(|_| found.is_empty()) {
+        Some(read) => Ok((read, sources.tree)),
+        None => Err(SceneError::new(found)),
+    }
+}
 
 /// What in `node` its entry of the table does not allow, [`MOST_TOLD`] at most.
 pub(crate) fn faults(node: &Node, spot: Spot, path: &str, sources: &Sources) -> Vec<Problem> {
@@ -210,7 +246,7 @@ fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)
             Some(_) => None,
         },
         Shape::Group(_) if path == "bearing" => {
-            let known = catalogue::parse(bare).ok()?;
+            let known = CatalogueBearing::parse(bare).ok()?;
             Some((format!("\"{}\"", known.name), "the name of a bearing of the catalogue, in quotes"))
         }
         _ => None,
