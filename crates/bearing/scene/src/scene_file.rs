@@ -4,7 +4,6 @@
 //! are errors that show the line, the field, the value, the allowed ones and a remedy. Missing fields take
 //! their defaults, which [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
-mod check;
 mod deviations;
 mod dialect;
 mod exclusions;
@@ -25,13 +24,14 @@ use crate::fields::tree::Node;
 use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
 use crate::reading::faults;
+use crate::reading::finding::Finding;
 use crate::reading::load::load;
+use crate::reading::problem::MOST_TOLD;
 use crate::reading::sources::{SCENE, Sources};
 pub use crate::reading::{
     Kind, Place, Problem, SceneError, nearest, offset, place_in_file, read_as, without_mark,
 };
 use crate::scene::Scene;
-use check::check;
 use overrides::written_by;
 
 /// Paths of fields that several checks name.
@@ -90,6 +90,32 @@ impl Scene {
     pub fn validate(&self) -> Result<(), SceneError> {
         check(self, &Sources::of_scene(self))
     }
+}
+
+/// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
+fn check(scene: &Scene, sources: &Sources) -> Result<(), SceneError> {
+    let found = findings(scene);
+    if found.is_empty() {
+        return Ok(());
+    }
+    Err(SceneError::new(found.into_iter().take(MOST_TOLD).map(|finding| sources.problem(finding)).collect()))
+}
+
+/// Relations only of numbers that are in range.
+fn findings(scene: &Scene) -> Vec<Finding> {
+    let found = names::findings(scene);
+    if !found.is_empty() {
+        return found;
+    }
+    let rules = [
+        geometry::findings,
+        deviations::findings,
+        extent::findings,
+        exclusions::findings,
+        operation::findings,
+        ring_meshes::findings,
+    ];
+    rules.iter().flat_map(|findings| findings(scene)).collect()
 }
 
 /// A field of a scene file that the name of another bearing has replaced.

@@ -284,7 +284,7 @@ fn refuses_fields_that_no_scene_has_before_anything_runs() {
         let refused = desk.run("--out=A");
         assert!(!refused.status.success() && !desk.join("A").exists(), "{}", said(&refused));
         let field = wrong.split('=').next().expect("a field");
-        let did_you_mean = format!("did you mean `{}`?", right.split('=').next().expect("a field"));
+        let did_you_mean = format!("did you mean `{}`", right.split('=').next().expect("a field"));
         says(&refused, &[line, field, &did_you_mean]);
     }
 }

@@ -259,13 +259,13 @@ fn refuses_campaigns_that_cannot_be() {
         (with("bearing: \"NU 205\""), &["a.ron:2:1", "`bearing`", "`set"]),
         (
             field("operation.laod_n"),
-            &["a.ron:2:25", "`operation.laod_n`", "did you mean `operation.load_n`?"],
+            &["a.ron:2:25", "`operation.laod_n`", "did you mean `operation.load_n` [N]?"],
         ),
         (field("load_n"), &["a.ron:2:25", "operation.load_n"]),
         (with("set: [\"seed=1\", \"mesh.size=1.0\"], variants: grid([])"), &["a.ron:2:7", "`seed`"]),
         (
             with("set: [\"cage=None\", \"mesh.size=1.0\"], variants: grid([])"),
-            &["a.ron:2:20", "`mesh.size`", "did you mean `mesh.size_mm`?"],
+            &["a.ron:2:20", "`mesh.size`", "did you mean `mesh.size_mm` [mm]?"],
         ),
         (with("scene: \"no.ron\", variants: grid([])"), &["no.ron", "there is no such file"]),
     ] {
