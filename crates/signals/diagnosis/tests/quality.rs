@@ -339,3 +339,15 @@ proptest! {
         prop_assert!(quality::no_signal(&all).is_none(), "{seed} {height} {bits} {digits}: {all:?}");
     }
 }
+
+/// Noise that was made, in five digits, and a signal of a converter so coarse that most samples are zero.
+#[test]
+fn behaves_noise_that_was_made_and_coarse_converters_are_signals() {
+    let mut noise = Noise::new(7);
+    let uniform: Vec<f64> = (0..COUNT).map(|_| (1e5 * noise.uniform()).round() / 1e5).collect();
+    assert_eq!(quality::no_signal(&found(&uniform)), None);
+    for step in [0.3, 0.6, 1.0] {
+        let coarse: Vec<f64> = impacts(3, COUNT, 8.0).iter().map(|x| (x / step).round()).collect();
+        assert_eq!(quality::no_signal(&found(&coarse)), None, "{step}");
+    }
+}

@@ -118,8 +118,6 @@ pub fn open(path: &Path) -> Result<Recording> {
         return across(path, &rows, dialect);
     }
     dialect.day_first = day_comes_first(path, coding, dialect, &start[first..])?;
-    let mut heading = start[..first].iter().rev().filter(|line| line.contains(char::is_alphabetic));
-    dialect.heading = std::array::from_fn(|_| heading.next().map(|line| digest(line)));
     let commas = dialect.decimal_comma && start[first..].iter().any(|line| line.contains(','));
     let rate_hz = head::rate_hz(&start[..first], dialect, commas);
     let numbers = columns_of_numbers(rows.first().map_or("", |row| row.as_str()), dialect);
@@ -129,6 +127,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     {
         first -= 1;
     }
+    let mut heading = start[..first].iter().rev().filter(|line| line.contains(char::is_alphabetic));
+    dialect.heading = std::array::from_fn(|_| heading.next().map(|line| digest(line)));
     let first_rows = FirstRows::of(&rows, dialect);
     let (names, units) = head::names(&start[..first], dialect, columns, &first_rows);
     let names_rows = match &names[..] {

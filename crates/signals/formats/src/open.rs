@@ -79,15 +79,17 @@ impl Recording {
     }
 }
 
-/// At most ten of the notes on what is left out, and how many more there are.
+/// At most ten of the notes on what is left out, and twenty others, and how many more there are.
 fn few(notes: Vec<String>) -> Vec<String> {
-    const SHOWN: usize = 10;
-    let (out, mut rest): (Vec<String>, Vec<String>) =
-        notes.into_iter().partition(|note| note.contains(LEFT_OUT));
-    let more = out.len().saturating_sub(SHOWN);
-    rest.extend(out.into_iter().take(SHOWN));
-    rest.extend((more > 0).then(|| format!("and {more} more are left out")));
-    rest
+    const SHOWN: [usize; 2] = [20, 10];
+    let (out, rest): (Vec<String>, Vec<String>) = notes.into_iter().partition(|note| note.contains(LEFT_OUT));
+    let more = |all: &[String], shown: usize, what: &str| {
+        let more = all.len().saturating_sub(shown);
+        (more > 0).then(|| format!("and {more} more {what}"))
+    };
+    let (of_rest, of_out) = (more(&rest, SHOWN[0], "notes"), more(&out, SHOWN[1], "are left out"));
+    let rest = rest.into_iter().take(SHOWN[0]).chain(of_rest);
+    rest.chain(out.into_iter().take(SHOWN[1])).chain(of_out).collect()
 }
 
 /// Whether HDF5 begins, behind a block of the user's at most.

@@ -189,7 +189,10 @@ fn own_clock<'a>(
             && unit_of(clock) == unit_of(&channels[main])
             && courses[*n].as_ref().is_some_and(is_other)
     };
-    let number = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
+    let number = |name: &str| {
+        let from = name.chars().skip_while(|c| !c.is_ascii_digit());
+        from.take_while(char::is_ascii_digit).collect::<String>()
+    };
     let is_called = |n: &usize| {
         let clock = own_name(&channels[*n]).to_lowercase();
         let same = number(&clock) == number(&name) && !number(&name).is_empty();

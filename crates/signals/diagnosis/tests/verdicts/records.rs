@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use stribeck_diagnosis::record::quality;
 use stribeck_diagnosis::{Analysis, Family, MeasuredFindings};
 use stribeck_formats::Recording;
 
@@ -148,4 +149,22 @@ fn peer_verdicts_on_records_of_case_western_reserve() {
         let found = of_file(&folder.join(format!("{file}.mat")), "DE", 12_000.0, rpm);
         assert_eq!(claimed(&found), expected, "{file}: {found:#?}");
     }
+}
+
+/// Healthy and damaged records of eight rigs, whatever their sensors and converters: each is a record of a signal.
+#[test]
+fn peer_measured_records_are_records_of_a_signal() {
+    let mut channels = 0;
+    for folder in ["cwru", "cwru-more", "femto", "hit-sm", "ims", "mfpt", "paderborn", "uestc"] {
+        let Some(folder) = measured(folder) else { return };
+        for file in std::fs::read_dir(folder).unwrap() {
+            let recording = Recording::open(file.unwrap().path()).unwrap();
+            for channel in recording.channels.iter().filter(|channel| channel.len > 1000 && !channel.is_time) {
+                let found = quality::of(channel, channel.rate_hz.unwrap_or(12_800.0), None).unwrap();
+                assert_eq!(quality::no_signal(&found), None, "{}: {}", recording.path.display(), channel.name);
+                channels += 1;
+            }
+        }
+    }
+    println!("{channels} channels");
 }

@@ -545,7 +545,7 @@ fn issue_pieces_of_a_wav_are_joined_and_pipes_are_refused() {
     let desk = Scratch::create("wav-pieces");
     let bytes = |from: i16| (from..from + 1000).flat_map(i16::to_le_bytes).collect::<Vec<u8>>();
     let second = [b"data".to_vec(), 2000_u32.to_le_bytes().to_vec(), bytes(1000)].concat();
-    let found = opened(&desk, "a.wav", &wav(b"WAVE", 2000, &bytes(0), &second));
+    let found = opened(&desk, "a.wav", &wav(b"RIFF", 2000, &bytes(0), &second));
     let samples = found.channels[0].read().unwrap();
     assert!(
         samples.len() == 2000 && samples.iter().enumerate().all(|(n, x)| *x == n as f64 / 32_768.0),

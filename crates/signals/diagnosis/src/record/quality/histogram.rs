@@ -4,8 +4,10 @@
 #[derive(Debug)]
 pub(super) struct Histogram {
     sorted: Vec<f64>,
-    /// Values with the number of runs of equal samples, the most frequent first.
-    frequent: Vec<(f64, usize)>,
+    /// Values with the number of runs of equal samples, ascending.
+    values: Vec<(f64, usize)>,
+    /// Places there of the most frequent ones.
+    frequent: Vec<usize>,
     /// Samples in each of [`BINS`] parts of the range.
     bins: Vec<f64>,
 }
@@ -39,10 +41,16 @@ impl Histogram {
         let mut begun: Vec<f64> =
             samples.iter().take(1).copied().chain(new).filter(|x| x.is_finite()).collect();
         begun.sort_unstable_by(f64::total_cmp);
-        let mut frequent: Vec<(f64, usize)> =
+        let values: Vec<(f64, usize)> =
             begun.chunk_by(|a, b| a == b).map(|all| (all[0], all.len())).collect();
-        frequent.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        Some(Self { sorted, frequent, bins })
+        let mut frequent: Vec<usize> = (0..values.len()).collect();
+        let rank = |at: &usize| std::cmp::Reverse(values[*at].1);
+        if frequent.len() > FEW {
+            frequent.select_nth_unstable_by_key(FEW, rank);
+        }
+        frequent.truncate(FEW);
+        frequent.sort_by_key(rank);
+        Some(Self { sorted, values, frequent, bins })
     }
 
     pub(super) fn range(&self) -> f64 {
@@ -58,19 +66,23 @@ impl Histogram {
         const DECADES: f64 = 1e-15;
         let most = self.sorted[0].abs().max(self.sorted[self.sorted.len() - 1].abs());
         let spread = (self.quantile(0.75) - self.quantile(0.25)).abs();
-        self.frequent.len() > FEW && spread < DECADES * most && spread > 0.0
+        self.values.len() > FEW && spread < DECADES * most && spread > 0.0
     }
 
     /// Values that stand more often than all others, but for those at the rails of a limiter, with their samples.
     pub(super) fn marks(&self, rails: &[f64]) -> Vec<(f64, usize)> {
-        if self.frequent.len() <= FEW {
+        if self.values.len() <= FEW {
             return Vec::new();
         }
-        let usual = self.frequent[MARKS].1;
+        let usual = self.values[self.frequent[MARKS]].1;
         let (first, last) = (self.sorted[0], self.sorted[self.sorted.len() - 1]);
         let samples =
             |of: f64| self.sorted.partition_point(|x| *x <= of) - self.sorted.partition_point(|x| *x < of);
-        let is_mark = |&(value, runs): &(f64, usize)| {
+        let is_mark = |at: &usize| {
+            let (value, runs) = self.values[*at];
+            let beside = self.values[at.saturating_sub(2)..(at + 3).min(self.values.len())].iter();
+            // The density of a signal is smooth.
+            let peaks = beside.filter(|of| of.0 != value).all(|of| runs > 4 * of.1 || of.1 > runs);
             let others = self.sorted.len() - samples(value);
             let (lowest, highest) = match value {
                 _ if value == first => (self.sorted[self.sorted.len() - others], last),
@@ -81,12 +93,13 @@ impl Histogram {
             let apart = (lowest - value).max(value - highest) / (highest - lowest);
             let at_end = value == first || value == last;
             let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
-            let is_often = runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
+            let is_often = peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
             // What fills gaps stands in a few long runs.
             let is_scattered = runs > 1 && 2 * runs > samples(value);
             is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)
         };
-        self.frequent.iter().take(MARKS).filter(|of| is_mark(of)).map(|of| (of.0, samples(of.0))).collect()
+        let marks = self.frequent.iter().take(MARKS).filter(|at| is_mark(at)).map(|at| self.values[*at].0);
+        marks.map(|value| (value, samples(value))).collect()
     }
 
     /// Whether values stand at both ends of the range and none in its middle.
@@ -95,7 +108,7 @@ impl Histogram {
         let (ends, middle) =
             ([of(&self.bins[..2]), of(&self.bins[BINS - 2..])], of(&self.bins[BINS / 4..BINS * 3 / 4]));
         let mean = self.sorted.len() as f64 / BINS as f64;
-        self.frequent.len() > FEW && middle < 0.05 * mean && ends.iter().all(|end| *end > mean)
+        self.values.len() > FEW && middle < 0.05 * mean && ends.iter().all(|end| *end > mean)
     }
 
     /// Whether the density breaks off at both ends, where that of a signal falls off and that of a limiter piles up.
@@ -103,9 +116,16 @@ impl Histogram {
         const LEAST: f64 = 8.0;
         let sharp = |outer: f64, next: f64| outer >= LEAST && outer > 0.4 * next && outer < 4.0 * next;
         let end = self.bins.len() - 1;
-        self.frequent.len() > FEW
+        self.values.len() > FEW
             && sharp(self.bins[0], self.bins[1])
             && sharp(self.bins[end], self.bins[end - 1])
+    }
+
+    /// Whether the middle of the range is denser than its ends, as that of a uniform density is not.
+    pub(super) fn is_domed(&self) -> bool {
+        let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        let ends = of(&self.bins[..2]).max(of(&self.bins[BINS - 2..]));
+        of(&self.bins[BINS / 4..BINS * 3 / 4]) > 1.2 * ends
     }
 
     /// Whether all values lie on one side of zero, and most of them near it.
@@ -113,7 +133,7 @@ impl Histogram {
         let [least, low, middle, high, most] = [0.001, 0.1, 0.5, 0.9, 0.999].map(|part| self.quantile(part));
         let (below, above) = ((low - least) / (middle - low), (most - high) / (high - middle));
         let near_zero = |edge: f64, other: f64| edge.abs() < 0.02 * (other - edge).abs();
-        self.frequent.len() > FEW
+        self.values.len() > FEW
             && (below < 0.5 && above > 0.9 && near_zero(least, most)
                 || above < 0.5 && below > 0.9 && near_zero(most, least))
     }

@@ -131,7 +131,7 @@ impl Inspection {
         let few = self.values.few_levels();
         let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
         let rails = self.rails(few.is_some(), &[&ends[..], &gaps].concat());
-        let mut found = self.no_signal(kept, &rails);
+        let mut found = self.no_signal(kept, &rails, few.is_some());
         // Values at both ends of numbers without their sign stand at no rail.
         if found.iter().all(|of| of.kind != Kind::SignLost) {
             found.extend(self.clipped(&rails, &at_rail));
@@ -158,7 +158,7 @@ impl Inspection {
     }
 
     /// By which the samples are no record of a signal.
-    fn no_signal(&self, kept: &[f64], rails: &[Rail]) -> Vec<Quality> {
+    fn no_signal(&self, kept: &[f64], rails: &[Rail], few_levels: bool) -> Vec<Quality> {
         let Some(histogram) = Histogram::of(kept) else { return Vec::new() };
         let whole = |kind, words: String| self.quality(kind, 1.0, 0, words);
         let repeats = similarity::repeats(kept);
@@ -170,7 +170,7 @@ impl Inspection {
         found.extend(
             repeats.filter(|repeats| !repeats.is_waveform).map(|repeats| self.repeated(kept, repeats)),
         );
-        if found.is_empty() {
+        if found.is_empty() && !few_levels {
             let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
             found.extend(self.marks(&histogram, &values));
         }
@@ -261,7 +261,9 @@ impl Inspection {
         let full = quantum.and_then(|quantum| jumps::full_range(low, high, quantum));
         let share = across as f64 / kept.len() as f64;
         let hollow = histogram.is_hollow() && share > 0.01;
-        let breaks_off = histogram.breaks_off() && quantum.is_some() && share > 1e-3;
+        // What wraps has a converter's steps; noise that was made is as dense at its ends as in the middle.
+        let is_wrapped = full.is_some() || quantum.is_some() && histogram.is_domed();
+        let breaks_off = histogram.breaks_off() && is_wrapped && share > 1e-3;
         if !hollow && !breaks_off && (full.is_none() || across < 2) {
             return None;
         }
