@@ -75,7 +75,7 @@ fn issue_one_bearing_has_one_mesh_however_it_is_named() {
         Scene::parse(text, "mine").and_then(|scene| scene.with_overrides(set)).expect(text).mesh
     };
     let named = scene(&format!("(bearing: \"6203\", {mesh})"), &[]);
-    assert_eq!((named.size_mm, named.grading.as_ref().map(|g| g.coarse_mm)), (0.263, Some(0.75)));
+    assert_eq!((named.size_mm, named.grading.as_ref().map(|g| g.coarse_mm)), (0.262, Some(0.75)));
     for (text, set) in [
         (&*format!("({mesh})"), &["bearing=6203"][..]),
         ("()", &["bearing=6203", "mesh.grading=()", "mesh.roller_facets=80"]),
