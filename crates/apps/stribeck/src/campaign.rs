@@ -42,7 +42,7 @@ pub(crate) struct OfFile {
     /// file: `> job.sh`. Each part has the --jobs, --threads [default there: one] and --memory-gb of this command
     #[arg(long, value_name = "ENGINE", conflicts_with_all = ["set", "shard"])]
     emit: Option<emit::Engine>,
-    /// Parts of an emitted script [default: as many as runs, 16 at most]
+    /// Parts of an emitted script [default: 16]; never more than runs, nor than the 1000 that an array of Slurm takes
     #[arg(long, value_name = "N", requires = "emit", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     shards: Option<u32>,
 }
@@ -174,8 +174,6 @@ pub(crate) fn carry_out(
 
 /// Reasons for refused runs that are listed.
 const MOST_REASONS: usize = 10;
-/// Numbers of runs that are listed of each.
-const MOST_NUMBERS: usize = 5;
 
 /// Says before the first run what is not as the file has it: fields that a bearing replaces, and runs that cannot
 /// be.
@@ -202,21 +200,7 @@ pub(crate) fn announce(campaign: &Campaign) {
             campaign.runs.len()
         );
     }
-    for refused in refused.iter().take(MOST_REASONS) {
-        let labels = refused.labels.iter().map(|(label, count)| format!("{label}: {count}"));
-        let mut numbers: Vec<String> =
-            refused.runs.iter().take(MOST_NUMBERS).map(ToString::to_string).collect();
-        if refused.runs.len() > MOST_NUMBERS {
-            numbers.push("…".to_owned());
-        }
-        alert!(
-            "  {} of them ({}; runs {}): {}",
-            refused.runs.len(),
-            labels.collect::<Vec<_>>().join(", "),
-            numbers.join(", "),
-            refused.reason
-        );
-    }
+    refused.iter().take(MOST_REASONS).for_each(|refused| alert!("  {refused}"));
     if refused.len() > MOST_REASONS {
         alert!("  … and {} reasons more", refused.len() - MOST_REASONS);
     }
@@ -352,12 +336,13 @@ fn index(campaign: &Campaign, runs: Vec<OneOfMany>, written: &Written) -> Campai
     files.push((CAMPAIGN, "the campaign, as it was run"));
     let varies = campaign.fields.iter().any(|field| field.starts_with("bearing"));
     let scene = campaign.runs.iter().find_map(|run| run.scene.as_ref().ok()).filter(|_| !varies);
+    let refused = campaign.refused().into_iter().take(MOST_REASONS).map(|refused| refused.to_string());
     CampaignIndex {
         name: campaign.name.clone(),
         bearing: scene.map(in_words),
         fields: campaign.fields.clone(),
         runs,
-        lost: campaign.lost_labels(),
+        notes: refused.chain(campaign.lost_labels()).collect(),
         files: files.into_iter().map(|(file, what)| (file.to_owned(), what.to_owned())).collect(),
     }
 }

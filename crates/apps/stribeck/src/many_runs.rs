@@ -143,8 +143,12 @@ impl ManyRuns {
     ) -> Result<()> {
         let wanted = scenes.enumerate().map(|(at, scene)| Wanted { number: at + 1, scene: Ok(scene) });
         let due = self.due(keep, wanted, interrupt)?;
-        self.make(keep, &due, share, interrupt, &|jobs| say(due.len(), jobs));
+        let left = self.make(keep, &due, share, interrupt, &|jobs| say(due.len(), jobs));
         ensure!(!interrupt.is_pressed(), Interrupted);
+        if let Some(why) = left.refused {
+            bail!(why);
+        }
+        ensure!(left.elsewhere == 0, "{} runs are being run by another program: wait for it", left.elsewhere);
         Ok(())
     }
 

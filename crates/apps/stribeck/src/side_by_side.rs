@@ -55,9 +55,9 @@ pub(crate) fn outstanding(planned: impl Iterator<Item = (Due, &'static str)>) ->
 #[derive(Debug, Default)]
 pub(crate) struct Left {
     /// How many another program is running.
-    elsewhere: usize,
+    pub(crate) elsewhere: usize,
     /// What the disk has refused.
-    refused: Option<String>,
+    pub(crate) refused: Option<String>,
 }
 
 impl Left {
@@ -203,7 +203,7 @@ impl<'a> Shop<'a> {
 }
 
 /// Whether the files of a run are not what a run leaves, so that it cannot be continued.
-pub(crate) fn is_damage(error: &Error) -> bool {
+fn is_damage(error: &Error) -> bool {
     use StoreError::{Mesh, NotARun, OtherScene, RunInfo, Trace};
     matches!(
         error,

@@ -29,8 +29,8 @@ pub struct CampaignIndex {
     pub fields: Vec<String>,
     /// Its runs, in order.
     pub runs: Vec<OneOfMany>,
-    /// Labels that were planned and have no run.
-    pub lost: Vec<String>,
+    /// What was refused, and what its absence gives away.
+    pub notes: Vec<String>,
     /// Files beside the page: name and content.
     pub files: Vec<(String, String)>,
 }
@@ -219,9 +219,9 @@ fn incomplete(index: &CampaignIndex, complete: usize) -> Markup {
     for run in index.runs.iter().filter(|run| !run.is_complete()) {
         *counts.entry(run.row.status.as_str()).or_default() += 1;
     }
-    let lost = index.lost.iter().map(|lost| format!(" {}", sentence(lost))).collect::<String>();
+    let notes = index.notes.iter().map(|note| format!(" {}", sentence(note))).collect::<String>();
     let rest = "What the others left is drawn where there is a number, and their reasons are in the table.";
-    banner((complete, index.runs.len()), "runs", counts, &format!("{rest}{lost}"))
+    banner((complete, index.runs.len()), "runs", counts, &format!("{rest}{notes}"))
 }
 
 /// Where the values of a field stand on an axis.
@@ -442,7 +442,7 @@ mod tests {
     pub(super) fn index(runs: Vec<OneOfMany>) -> CampaignIndex {
         let (name, fields) = ("x".into(), vec!["operation.load_n".into()]);
         let bearing = Some("a 6205".into());
-        CampaignIndex { name, bearing, fields, runs, lost: Vec::new(), files: Vec::new() }
+        CampaignIndex { name, bearing, fields, runs, notes: Vec::new(), files: Vec::new() }
     }
 
     #[test]

@@ -55,8 +55,9 @@ pub(super) fn text(campaign: &Campaign, rows: &[OneOfMany], written: &Written) -
             )
         },
     );
-    for lost in campaign.lost_labels() {
-        page += &format!("- {lost}.\n");
+    let refused = campaign.refused().into_iter().map(|refused| refused.to_string());
+    for note in refused.chain(campaign.lost_labels()) {
+        page += &format!("- {note}.\n");
     }
     for limit in limits(rows) {
         page += &format!("- {limit}\n");

@@ -20,6 +20,7 @@ use stribeck_store::trace::TraceFile;
 
 use super::Folder;
 use crate::many_runs::{Stage, summary_of};
+use crate::place::shown;
 
 pub(super) const RUNS: &str = "runs.parquet";
 pub(super) const EVENTS: &str = "events.parquet";
@@ -74,16 +75,18 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 of_machine.map(TraceFile::open).transpose()?.map_or(info.samples, |file| file.len());
             one.row.n_samples = Some(samples);
             one.folder = Some(format!("runs/{}", scene.hash()));
-            let summary = summary_of(&path)?;
-            one.take(&info, &summary, &quantities).with_context(|| of_another_version(&path))?;
+            let taken = summary_of(&path).and_then(|summary| Ok(one.take(&info, &summary, &quantities)?));
+            taken.with_context(|| {
+                format!(
+                    "run {} has no numbers: remove `{}`, and the same command makes it again",
+                    variant.number,
+                    shown(&path)
+                )
+            })?;
         }
         Ok(one)
     };
     campaign.runs.iter().zip(stages).map(row).collect()
-}
-
-fn of_another_version(folder: &Path) -> String {
-    format!("`{}` has another summary than this program writes", folder.display())
 }
 
 /// Writes the tables, each whole or not at all. That of the signals needs those of the runs.

@@ -16,6 +16,22 @@ pub struct Refused {
     pub labels: BTreeMap<Label, usize>,
 }
 
+/// Numbers of runs that a line names.
+const MOST_NUMBERS: usize = 5;
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let labels: Vec<String> =
+            self.labels.iter().map(|(label, count)| format!("{label}: {count}")).collect();
+        let mut numbers: Vec<String> = self.runs.iter().take(MOST_NUMBERS).map(ToString::to_string).collect();
+        if self.runs.len() > MOST_NUMBERS {
+            numbers.push("…".to_owned());
+        }
+        let (count, labels, numbers) = (self.runs.len(), labels.join(", "), numbers.join(", "));
+        write!(to, "{count} refused ({labels}; runs {numbers}): {}", self.reason)
+    }
+}
+
 impl Campaign {
     /// Refused runs by reason, the most frequent first. Reasons that differ in their numbers alone are one.
     pub fn refused(&self) -> Vec<Refused> {
