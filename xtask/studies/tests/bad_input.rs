@@ -238,8 +238,9 @@ fn survives_shapes_of_any_size() {
     let groove = (0.0..7.0_f64, length(), 0.0..0.02_f64, 0.0..1.6_f64, any::<bool>());
     let grooves = prop::collection::vec(groove, 0..4);
     let lengths = prop::array::uniform4(length());
-    let numbers = (lengths, prop::array::uniform4(count()), 0..6, grooves, any_number());
-    survives(600, numbers, |([a, b, c, d], [n, m, k, l], shape, grooves, angle)| {
+    let turns = (0.0..1.0_f64, 0.0..2.0_f64);
+    let numbers = (lengths, prop::array::uniform4(count()), 0..6, grooves, any_number(), turns);
+    survives(600, numbers, |([a, b, c, d], [n, m, k, l], shape, grooves, angle, (right, left))| {
         let part = match shape {
             0 => Rectangle { x0: a, y0: b, width: c, height: d, columns: n, rows: m }.part(),
             1 => {
@@ -263,15 +264,15 @@ fn survives_shapes_of_any_size() {
                 let outer_radius = if k % 4 == 0 { b } else { a + b.min(0.05) };
                 // Relaxing the cells around a deep groove takes seconds for a hundred layers.
                 let layers = if grooves.is_empty() { m } else { m % 30 };
-                let start_angle = angle.rem_euclid(1.0);
+                let start_angle = right;
                 let ring = Annulus { inner_radius: a, outer_radius, facets: n, layers, start_angle, grooves };
                 let grading = Grading { fine: side(k % 2 == 0), fine_layers: k, transitions: l % 14 };
                 if shape == 2 { ring.part() } else { ring.graded_part(&grading) }
             }
             4 => {
-                let (right_line_angle, left_line_angle) = (5.0 * c, 10.0 * d);
+                let (right_line_angle, left_line_angle) = (right, left);
                 let [inner_radius, outer_radius] = [a, b];
-                let half_width = 0.1 * angle;
+                let half_width = 0.1 * c;
                 ArcBlock {
                     inner_radius,
                     outer_radius,
