@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn behaves_what_follows_study_is_left_to_its_program() {
-        for line in ["--help", "-h", "kills --help", "kills --kills 5", "help kills", ""] {
+        for line in ["--help", "-h", "noise --help", "noise --only 5", "help noise", ""] {
             let words = line.split_whitespace();
             let cli = Cli::try_parse_from(["xtask", "-q", "study"].into_iter().chain(words)).expect(line);
             let Command::Study(study) = cli.command else { panic!("{line}") };

@@ -12,11 +12,11 @@ fn xtask(cargo: &str, words: &[&str]) -> Output {
 #[test]
 fn behaves_a_study_is_built_and_run_by_cargo_with_all_its_words() {
     // What prints its arguments in the place of cargo.
-    let output = xtask("echo", &["--quiet", "study", "kills", "--kills", "3", "--help"]);
+    let output = xtask("echo", &["--quiet", "study", "long", "--only", "3", "--help"]);
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
     assert!(said.starts_with("run --release --package stribeck-studies --manifest-path"), "{said}");
-    assert!(said.trim_end().ends_with(" -- --quiet kills --kills 3 --help"), "{said}");
+    assert!(said.trim_end().ends_with(" -- --quiet long --only 3 --help"), "{said}");
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn behaves_a_command_that_reads_records_is_handed_on_to_the_program() {
 
 #[test]
 fn behaves_without_cargo_a_study_says_what_it_needs() {
-    let output = xtask("/nowhere/cargo", &["study", "kills"]);
+    let output = xtask("/nowhere/cargo", &["study", "noise"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(said.contains("cannot start cargo") && said.contains("PATH"), "{said}");

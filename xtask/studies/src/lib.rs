@@ -17,7 +17,6 @@ mod analyse;
 mod atlas;
 mod figure;
 mod host;
-mod kills;
 mod long;
 mod machine;
 mod noise;
@@ -55,8 +54,6 @@ pub enum Study {
     Paper(Flags),
     /// The bearing for 0.35 s: lines resolved to 3 Hz, the defect in the envelope
     Long(long::Options),
-    /// Runs killed at random moments and continued: the same bytes
-    Kills(kills::Options),
     /// Stiff and extreme cases: energy balance, and whether the program stopped or warned
     Stability(Flags),
     /// Error against run time of the whole bearing
@@ -84,7 +81,6 @@ impl Study {
         match self {
             Self::Paper(_) => "paper",
             Self::Long(_) => "long",
-            Self::Kills(_) => "kills",
             Self::Stability(_) => "stability",
             Self::RunTime(_) => "run_time",
             Self::WorkPrecision => "work_precision",
@@ -103,7 +99,6 @@ impl Study {
         match self {
             Self::Paper(flags) => paper::measure(&runner(flags), rows)?,
             Self::Long(options) => long::measure(options, host, rows)?,
-            Self::Kills(options) => return kills::measure(options, host),
             Self::Stability(flags) => return stability::measure(&runner(flags), rows),
             Self::RunTime(options) => run_time::measure(options, host, rows)?,
             Self::WorkPrecision => work_precision::measure(host, rows)?,

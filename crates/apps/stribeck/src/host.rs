@@ -100,14 +100,6 @@ fn cpu_s() -> f64 {
     std::fs::read_to_string("/proc/self/stat").ok().and_then(|stat| cpu_of(&stat)).unwrap_or(0.0)
 }
 
-/// Most memory that this process has had so far [MiB]; `None` where the system has no `/proc`.
-pub fn peak_memory_mib() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kib / 1024.0)
-}
-
 /// User and system time [s] of a line of `/proc/<pid>/stat`, fields 14 and 15.
 fn cpu_of(stat: &str) -> Option<f64> {
     // The second field, the program's name, may contain spaces and brackets; the last bracket ends it.

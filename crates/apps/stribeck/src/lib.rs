@@ -44,7 +44,6 @@ pub mod new;
 mod open;
 mod out;
 mod own_files;
-mod pdf;
 mod plan;
 mod remove;
 mod report;
@@ -55,8 +54,6 @@ mod simulate;
 mod stiffness;
 #[cfg(feature = "full")]
 mod sweep;
-#[cfg(feature = "full")]
-mod transfer;
 mod validate;
 
 use std::process::ExitCode;
@@ -120,7 +117,7 @@ pub enum Command {
     #[command(alias = "run", after_help = "Example: stribeck simulate mine.ron --set operation.load_n=2000")]
     Simulate(simulate::Options),
     /// Writes the report of a run again
-    #[command(after_help = "Example: stribeck report mine --pdf")]
+    #[command(after_help = "Example: stribeck report mine --lab")]
     Report(report::Options),
     /// Runs a scene with several values of some fields, or a campaign file; also `campaign`
     #[command(
@@ -178,9 +175,6 @@ pub enum Command {
     /// Writes the completions of commands and flags for a shell
     #[command(after_help = "Example: stribeck completions bash > stribeck.bash")]
     Completions(shell::Completions),
-    /// Writes the pages of the manual
-    #[command(after_help = "Example: stribeck man ~/.local/share/man/man1")]
-    Man(shell::Man),
 }
 
 impl Command {
@@ -197,7 +191,6 @@ impl Command {
                 | Self::Compare(_)
                 | Self::Export(_)
                 | Self::Completions(_)
-                | Self::Man(_)
         )
     }
 
@@ -224,7 +217,6 @@ impl Command {
             Self::Open(options) => open::run(options, place),
             Self::Rm(options) => remove::run(options, place),
             Self::Completions(options) => shell::completions(options),
-            Self::Man(options) => shell::man(options),
         }
     }
 }

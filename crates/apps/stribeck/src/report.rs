@@ -1,6 +1,6 @@
 //! `stribeck report`: writes the report of a run that exists already.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -8,7 +8,6 @@ use stribeck_store::run_dir::{Run, RunDir};
 
 use crate::lab;
 use crate::out::{caution, detail, say};
-use crate::pdf;
 use crate::place::{Place, shown};
 use crate::shelf::existing;
 
@@ -23,9 +22,6 @@ pub struct Options {
     /// Look at the record up to this time [s] [default: its end]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     to_s: Option<f64>,
-    /// Print the page as report.pdf, too, A4, through Chromium, Chrome or Edge where one is installed
-    #[arg(long)]
-    pdf: bool,
     /// Make the page in which the bearing of the run runs, too, as lab.html beside the report, which leads to
     /// it (`stribeck lab`)
     #[arg(long)]
@@ -76,7 +72,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         for note in stribeck_report::write_ensemble(&folder)?.notes {
             caution!("{note}");
         }
-        return announce(options, &RunDir::open_ensemble(&folder)?.report());
+        say!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
+        return Ok(ExitCode::SUCCESS);
     }
     let dir = RunDir::open(&folder)?;
     for missing in Run::read(dir.path())?.damage() {
@@ -87,14 +84,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     detail!("report of `{}`", shown(dir.path()));
     stribeck_report::write_between(dir.path(), time_s)?;
-    announce(options, &dir.report())
-}
-
-/// Prints the path of the page, and the page as PDF where requested.
-fn announce(options: &Options, page: &Path) -> Result<ExitCode> {
-    say!("report: {}", shown(page));
-    if options.pdf {
-        say!("pdf: {}", shown(&pdf::print(page)?));
-    }
+    say!("report: {}", shown(&dir.report()));
     Ok(ExitCode::SUCCESS)
 }

@@ -3,15 +3,17 @@
 //! roughness. The modes are made once and kept in the folder for temporary files.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::Instant;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stribeck_reduced::motion::{BearingInMotion, Saved};
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::reduced::{Prepared, prepared};
 
 /// Samples before the first measurement: the start has been left, and rollers have passed the spall.
 const FIRST: usize = 2000;
+
+/// Samples that are measured, each by itself; the median counts.
+const MEASURED: usize = 4000;
 
 /// A 6205 on arcs, which is rigid but for its contacts.
 const RIGID: [&str; 4] = [
@@ -28,15 +30,17 @@ const OILED: [&str; 2] = [
      0.05, seed: 2))]",
 ];
 
-fn step(criterion: &mut Criterion) {
+fn main() {
+    // `cargo test` runs benches too, with this flag: nothing to measure then.
+    if !std::env::args().any(|argument| argument == "--bench") {
+        return;
+    }
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../fixtures/scenes");
     let scene = |file: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        let scene = Scene::read(scenes.join(file)).expect("the scene is sound");
+        let scene = Scene::read(scenes.join(file)).expect("a scene that can be read");
         scene.with_overrides(&overrides).expect("a scene").resolve()
     };
-    let mut group = criterion.benchmark_group("step of the reduced bearing");
-    group.sample_size(50).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(3));
     for (name, scene) in [
         ("polygons", scene("reduced.ron", &["contact.surface=facet"])),
         ("arcs", scene("reduced.ron", &["contact.surface=arc"])),
@@ -50,11 +54,12 @@ fn step(criterion: &mut Criterion) {
         let mut motion = BearingInMotion::new(bearing, saved);
         let sample = |motion: &mut BearingInMotion| motion.interval(steps_per_sample);
         (0..FIRST).for_each(|_| _ = sample(&mut motion));
-        group.throughput(Throughput::Elements(steps_per_sample as u64));
-        group.bench_function(name, |bench| bench.iter(|| sample(&mut motion)));
+        let mut times = [0.0; MEASURED].map(|_: f64| {
+            let start = Instant::now();
+            sample(&mut motion);
+            start.elapsed().as_nanos() as f64 / steps_per_sample as f64
+        });
+        times.sort_by(f64::total_cmp);
+        println!("{name:<24}{:>7.2} µs a step", 1e-3 * times[MEASURED / 2]);
     }
-    group.finish();
 }
-
-criterion_group!(benches, step);
-criterion_main!(benches);

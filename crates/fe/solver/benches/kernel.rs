@@ -3,11 +3,10 @@
 //!
 //! `strips` a structured block; `gather` the same block with its node numbers shuffled; `congruent` equal
 //! discs, eight to a tile, quadrilaterals and triangles. Ten million elements need some gigabytes: set
-//! `STRIBECK_BENCH_LARGE`.
+//! `STRIBECK_BENCH_LARGE`. A kind named on the command line is measured alone.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use stribeck_mesh::{Disc, Mesh, Rectangle};
 use stribeck_solver::{Dynamics, Elastic, Model};
 
@@ -69,40 +68,51 @@ fn in_motion(mesh: Mesh) -> Dynamics {
     d
 }
 
-fn kernel(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("kernel");
-    group.sample_size(20).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+/// Median time of a step, measured for a second after a warm-up.
+fn step_time(d: &mut Dynamics) -> Duration {
+    let timed = |d: &mut Dynamics| {
+        let start = Instant::now();
+        d.step(&mut []);
+        start.elapsed()
+    };
+    let start = Instant::now();
+    while start.elapsed() < Duration::from_millis(300) {
+        timed(d);
+    }
+    let (start, mut times) = (Instant::now(), Vec::new());
+    while start.elapsed() < Duration::from_secs(1) || times.len() < 20 {
+        times.push(timed(d));
+    }
+    times.sort_unstable();
+    times[times.len() / 2]
+}
+
+fn main() {
+    // `cargo test` runs benches too, with this flag: nothing to measure then.
+    if !std::env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
     let mut blocks = BLOCKS.to_vec();
     if std::env::var_os("STRIBECK_BENCH_LARGE").is_some() {
         blocks.push(LARGE);
     }
-    // Made one at a time: all of them together would not fit.
-    let strips = blocks
-        .iter()
-        .map(|&(c, r)| ("strips", c * r, Box::new(move || block(c, r)) as Box<dyn Fn() -> Mesh>));
-    let gather = blocks.iter().map(|&(c, r)| {
-        let mesh = move || {
-            let mut mesh = block(c, r);
-            shuffle(&mut mesh);
-            mesh
-        };
-        ("gather", c * r, Box::new(mesh) as Box<dyn Fn() -> Mesh>)
+    let measure = |kind: &str, sizes: &[(usize, usize)], mesh: fn((usize, usize)) -> Mesh| {
+        if wanted.as_ref().is_some_and(|wanted| !kind.contains(wanted.as_str())) {
+            return;
+        }
+        for &size in sizes {
+            let mesh = mesh(size);
+            let elements = mesh.elements();
+            let time = step_time(&mut in_motion(mesh));
+            println!("{kind:<10}{elements:>9} elements {:>7.2} ns", time.as_nanos() as f64 / elements as f64);
+        }
+    };
+    measure("strips", &blocks, |(columns, rows)| block(columns, rows));
+    measure("gather", &blocks, |(columns, rows)| {
+        let mut mesh = block(columns, rows);
+        shuffle(&mut mesh);
+        mesh
     });
-    let one = discs(1).elements();
-    let congruent =
-        DISCS.iter().map(|&n| ("congruent", n * one, Box::new(move || discs(n)) as Box<dyn Fn() -> Mesh>));
-    for (kind, elements, mesh) in strips.chain(gather).chain(congruent) {
-        let id = BenchmarkId::new(kind, elements);
-        group.throughput(Throughput::Elements(elements as u64));
-        // Only the models named on the command line are made.
-        let mut d = None;
-        group.bench_function(id, |bench| {
-            let d = d.get_or_insert_with(|| in_motion(mesh()));
-            bench.iter(|| d.step(&mut []));
-        });
-    }
-    group.finish();
+    measure("congruent", &DISCS.map(|count| (count, 1)), |(count, _)| discs(count));
 }
-
-criterion_group!(benches, kernel);
-criterion_main!(benches);

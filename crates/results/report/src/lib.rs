@@ -38,7 +38,6 @@ mod field_words;
 
 mod course;
 mod kurtogram;
-mod sound;
 
 mod run;
 

@@ -10,7 +10,7 @@ use stribeck_store::run_dir::write_atomic;
 
 use crate::page::{self, charts, document, drawn, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
-use crate::{Error, SeriesFindings, SourcesFindings, course, kurtogram, sound};
+use crate::{Error, SeriesFindings, SourcesFindings, course, kurtogram};
 use stribeck_diagnosis::record::quality::Quality;
 use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_diagnosis::words::numbers::significant;
@@ -92,7 +92,6 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
                 }
                 @if let Some(baseline) = baseline { (levels_of(baseline, findings.velocity_mm_s.is_some())) }
             }
-            (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
             (figures)
             h2 #course { "Bands and course" }
             (pictures)

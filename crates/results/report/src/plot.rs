@@ -22,8 +22,6 @@ mod scale;
 mod shade;
 mod svg;
 
-pub(crate) use base64::bytes as base64_bytes;
-
 pub use interactive::script;
 pub use picture::{Anchor, Picture, Sheet};
 pub use raster::png;

@@ -10,9 +10,9 @@ use stribeck_diagnosis::words::numbers::{gravities, level, significant};
 
 use super::Subject;
 use super::drawing::{sampled, transient};
+use crate::Error;
 use crate::page::{Section, cell, charts, wide_table};
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
-use crate::{Error, sound};
 
 /// All of them stand behind tabs.
 const TABS: &str = "acceleration";
@@ -22,7 +22,7 @@ const NAMED: usize = 6;
 pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
     let findings = of.findings;
     let figures = raw(findings).into_iter().chain(others(of.record, findings)?).chain(notched(findings));
-    let after = html! { (levels(&findings.summary)) (sound::of_run(findings)) };
+    let after = levels(&findings.summary);
     Ok(Section::new("acceleration", "Acceleration")
         .figures(charts(figures), "No sensor was recorded.")
         .after(after))
