@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn behaves_words_in_quotation_marks_are_one() {
-        assert_eq!(words(r#" export a  --path "mass=1, damping=0.1; mass=2""#).len(), 4);
+        assert_eq!(words(r#" export a  --sensor "rate_hz=1, bits=2; a=2""#).len(), 4);
     }
 
     #[test]

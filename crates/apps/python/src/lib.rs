@@ -6,10 +6,6 @@
 mod runs;
 mod signals;
 
-mod filters;
-mod knocks;
-mod spectra;
-
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use stribeck_scene::scene_file::SceneError;
@@ -41,20 +37,5 @@ fn _stribeck(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(runs::report, module)?)?;
     module.add_function(wrap_pyfunction!(signals::analyse, module)?)?;
     module.add_function(wrap_pyfunction!(signals::defect_orders, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::band_rms, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::velocity_rms, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::strongest_line, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::whitened, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::comb, module)?)?;
-    module.add_function(wrap_pyfunction!(filters::envelope_spectrum, module)?)?;
-    module.add_function(wrap_pyfunction!(filters::record, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::fast_kurtogram, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::spectral_correlation, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::band_envelopes, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::event_spacing, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::order_track, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::means_over_angle, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::ridge, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::turns_of_ridge, module)?)?;
     Ok(())
 }

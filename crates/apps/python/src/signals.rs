@@ -1,16 +1,13 @@
-//! Diagnosis of arrays, and what all functions of signals share.
+//! Diagnosis of arrays.
 
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stribeck_diagnosis::{Analysis, Machine};
 use stribeck_formats::Channel;
 use stribeck_scene::catalogue;
 
-/// An array of numbers that goes back to Python.
-pub(crate) type Array<'py> = Bound<'py, PyArray1<f64>>;
-
-pub(crate) fn refused(why: impl std::fmt::Display) -> PyErr {
+fn refused(why: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(why.to_string())
 }
 

@@ -308,108 +308,6 @@ class Signals(unittest.TestCase):
         self.fs = 12_000.0
         self.x = random.normal(size=60_000)
 
-    def test_spectra_of_envelopes_are_those_of_scipys_steps(self):
-        from scipy import signal
-
-        dsp, x = stribeck.dsp, self.x[:20_000]
-        spectrum = np.fft.rfft(x)
-        f = np.fft.rfftfreq(len(x), 1 / self.fs)
-        spectrum[(f < 2000) | (f > 4000)] = 0
-        in_band = np.abs(signal.hilbert(np.fft.irfft(spectrum)))
-        f, p = dsp.envelope_spectrum(x, self.fs, (2000, 4000))
-        g, q = signal.periodogram(in_band**2, self.fs, "hann", scaling="spectrum")
-        np.testing.assert_allclose(f, g, rtol=1e-12)
-        np.testing.assert_allclose(p, q, rtol=1e-8, atol=1e-14)
-
-    def test_a_line_and_a_band_have_the_level_of_their_sine(self):
-        # 3 m/s² at 160.3 Hz: 3/√2 rms, and a velocity of that over the circular frequency.
-        dsp, hz = stribeck.dsp, 160.3
-        x = 3.0 * np.sin(2 * np.pi * hz * np.arange(48_000) / self.fs)
-        line = dsp.strongest_line(x, self.fs, 100, 200)
-        self.assertAlmostEqual(line.frequency_hz, hz, places=3)
-        self.assertAlmostEqual(line.amplitude, 3.0, places=3)
-        self.assertFalse(line.at_edge)
-        self.assertAlmostEqual(dsp.band_rms(x, self.fs, 100, 200), 3 / np.sqrt(2), places=4)
-        self.assertAlmostEqual(dsp.velocity_rms(x, self.fs) * 2 * np.pi * hz, 3 / np.sqrt(2), delta=2e-3)
-        self.assertAlmostEqual(dsp.band_rms(x, self.fs, 100, 200, nperseg=12_000), 3 / np.sqrt(2), places=3)
-
-    def test_a_recorder_clips_rounds_and_is_seeded(self):
-        dsp = stribeck.dsp
-        x = 3.0 * np.sin(2 * np.pi * 50 * np.arange(12_000) / self.fs)
-        ideal = dsp.record(x, self.fs, 3000.0)
-        np.testing.assert_allclose(ideal[300:-300], x[::4][300:-300], atol=1e-3)
-        stepped = dsp.record(x, self.fs, 3000.0, range=2.0, bits=4)
-        self.assertLessEqual(np.abs(stepped).max(), 2.0)
-        np.testing.assert_allclose(stepped / 0.25, np.round(stepped / 0.25), atol=1e-9)
-        one, two, other = (dsp.record(x, self.fs, 3000.0, noise_density=0.01, seed=seed) for seed in (1, 1, 2))
-        np.testing.assert_array_equal(one, two)
-        self.assertAlmostEqual((other - ideal).std() / (0.01 * np.sqrt(1500)), 1.0, delta=0.1)
-
-    def test_modulated_noise_is_found_in_its_band_and_at_its_rate(self):
-        from scipy import signal
-
-        dsp, n = stribeck.dsp, np.arange(len(self.x))
-        band = signal.sosfilt(signal.butter(6, [2200, 2800], "bandpass", fs=self.fs, output="sos"), self.x)
-        x = 0.2 * self.x + band * (1 + np.cos(2 * np.pi * 30 * n / self.fs))
-        alpha, f, s = dsp.spectral_correlation(x, self.fs, 100.0, 256, coherence=True)
-        self.assertEqual(s.shape, (len(f), len(alpha)))
-        self.assertTrue(np.iscomplexobj(s) and f[-1] == self.fs / 2 and alpha[-1] <= 100)
-        improved = np.abs(s[(f > 2200) & (f < 2800)]).mean(axis=0)
-        searched = alpha > 10
-        self.assertAlmostEqual(alpha[searched][np.argmax(improved[searched])], 30.0, delta=0.3)
-        low, high = dsp.band_envelopes(x, self.fs, [(500, 1500), (2200, 2800)], 100.0, nperseg=12_000)
-        peak = high.frequencies_hz[5:][np.argmax(high.values[5:])]
-        self.assertAlmostEqual(peak, 30.0, delta=1.0)
-        self.assertGreater(high.values.max(), 10 * low.values[5:].max())
-
-    def test_a_family_of_harmonics_has_its_chance(self):
-        from scipy.signal import welch
-
-        dsp, n = stribeck.dsp, np.arange(len(self.x))
-        family = sum(0.06 * np.sin(2 * np.pi * 87.3 * h * n / self.fs + h) for h in range(1, 6))
-        f, p = welch(self.x + family, self.fs, nperseg=20_000, noverlap=0)
-        found = dsp.comb_search(f, p, 50, 150, segments=3)
-        self.assertAlmostEqual(found.fundamental_hz, 87.3, delta=0.1)
-        self.assertLess(found.p_value, 1e-6)
-        self.assertEqual(len(found.ratios), 5)
-        f, p = welch(self.x, self.fs, nperseg=20_000, noverlap=0)
-        self.assertGreater(dsp.comb_search(f, p, 50, 150, segments=3).p_value, 1e-3)
-        self.assertAlmostEqual(dsp.whitened_spectrum(f, p, 3)[3:].mean(), 1.0, delta=0.05)
-
-    def test_pairs_of_events_keep_their_distance(self):
-        events = np.zeros(len(self.x))
-        # Never quite on time, as of a bearing: what repeats exactly is whitened away.
-        starts = np.arange(300, len(events) - 300, 331)
-        starts = starts + np.random.default_rng(2).integers(0, 16, len(starts))
-        events[starts], events[starts + 48] = 1.0, 0.8
-        ring = np.exp(-np.arange(40) / 4) * np.sin(1.3 * np.arange(40))
-        x = np.convolve(events, ring)[: len(events)] + 0.01 * self.x
-        found = stribeck.dsp.event_spacing(x, self.fs, 0.0015, 0.012)
-        self.assertEqual(found.verdict, "pairs")
-        self.assertAlmostEqual(found.lag_s, 48 / self.fs, delta=1e-4)
-        self.assertIsNone(found.clear_from_s)
-
-    def test_a_run_up_is_followed_and_becomes_steady_over_the_angle(self):
-        from scipy import signal
-
-        dsp, t = stribeck.dsp, np.arange(len(self.x)) / self.fs
-        turns = 20 * t + 2 * t**2  # 20 to 40 Hz in five seconds
-        x = np.sin(2 * np.pi * 3 * turns) + 0.3 * self.x
-        f, times, s = signal.spectrogram(x, self.fs, "hann", nperseg=4096, noverlap=3072)
-        near = (f > 40) & (f < 140)
-        line = dsp.ridge(f[near], times, s[near], 20.0)
-        np.testing.assert_allclose(line.frequencies_hz[2:-2], 3 * (20 + 4 * times[2:-2]), atol=1.5)
-        pulses = dsp.ridge_turns(times, line.frequencies_hz, self.fs, len(x), order=3)
-        self.assertAlmostEqual(len(pulses), turns[-1], delta=3)
-        tracked = dsp.order_track(x, pulses, 128)
-        self.assertEqual(tracked.shape, (len(pulses) - 1, 128))
-        true = np.interp(np.arange(int(turns[-1]) + 1), turns, np.arange(len(x)))
-        average = dsp.order_track(x, true, 128).mean(axis=0)
-        np.testing.assert_allclose(average, np.sin(2 * np.pi * 3 * np.arange(128) / 128), atol=0.15)
-        means = dsp.means_over_angle(x, turns, 64)
-        f, p = signal.periodogram(means, 64, "hann")
-        self.assertAlmostEqual(f[np.argmax(p)], 3.0, delta=0.05)
-
     def test_orders_of_the_catalogue_are_those_of_geometry(self):
         # SKF's numbers for the 6205-2RS of the Case Western bearing data center: 5.4152, 3.5848, 4.7135/2, 0.39828.
         orders = stribeck.defect_orders("6205")
@@ -430,54 +328,15 @@ class Signals(unittest.TestCase):
         found = stribeck.analyse(x, self.fs, bearing="6205", speed_rpm=60 * shaft_hz)
         claimed = [f["name"] for f in found["families"] if f["claimed"]]
         self.assertEqual(claimed, ["BPFO"])
-        low, high, kurtosis = max(stribeck.dsp.fast_kurtogram(x, self.fs), key=lambda band: band[2])
-        self.assertTrue(low < 3000 < high and kurtosis > 1, (low, high, kurtosis))
-        f, spectrum = stribeck.dsp.envelope_spectrum(x, self.fs, (2000.0, 4000.0))
-        near = (f > 40) & (f < 130)
-        self.assertAlmostEqual(f[near][np.argmax(spectrum[near])], order * shaft_hz, delta=0.5)
 
-    def test_a_wrong_shape_word_or_number_is_said(self):
-        dsp, x = stribeck.dsp, self.x[:4096]
-        for call, says in [
-            (lambda: dsp.band_rms(np.zeros((3, 3)), 1e3, 1, 2), "one dimension"),
-            (lambda: dsp.envelope_spectrum(x * 1j, self.fs), "is real"),
-            (lambda: dsp.band_rms(x, self.fs, 10, 20, nperseg=-4), "nperseg=-4"),
-            (lambda: dsp.envelope_spectrum(x, self.fs, (5000, 7000)), "7000"),
-            (lambda: dsp.record(x, self.fs, 2 * self.fs), "lower rate"),
-            (lambda: dsp.record(x, self.fs, self.fs, noise_density=-1.0), "noise_density=-1"),
-            (lambda: dsp.record(x, self.fs, self.fs, range=1.0, bits=80), "bits=80"),
-            (lambda: dsp.comb_search([0, 1, 3], [1, 1, 1], 1, 2), "equal steps"),
-            (lambda: dsp.comb_search(np.arange(200), np.ones(200), 1, 2, needed=9), "needed=9"),
-            (lambda: dsp.ridge([1, 2, 3], [0, 1], np.ones((2, 3)), 1.0), "shape"),
-            (lambda: dsp.ridge([1, 2, 2], [0, 1], np.ones((3, 2)), 1.0), "ascend"),
-            (lambda: dsp.ridge_turns([0, 1], [20.0], 1e3, 1000), "2 times"),
-            (lambda: dsp.order_track(x, [5, 4], 64), "ascend"),
-            (lambda: dsp.order_track(x, [5, 40], 0), "samples_per_turn=0"),
-            (lambda: dsp.fast_kurtogram(x, self.fs, 10), "131072|levels|samples"),
-            (lambda: dsp.order_track(x, [5, 40, 80, 120] * 100, 1 << 26), "samples_per_turn would make"),
-            (lambda: dsp.means_over_angle(x, np.linspace(0, 1e12, 4096), 64), "steps_per_turn would make"),
-            (lambda: dsp.ridge_turns([0, 1], [20.0, 20.0], 1e3, 1000, order=1e-9), "`order`"),
-            (lambda: dsp.band_envelopes([], 1e3, [(10, 20)], 5.0), "segment"),
-            (lambda: dsp.spectral_correlation(x, self.fs, 1e5), "100000"),
-        ]:
+    def test_a_wrong_shape_is_said(self):
+        for signal, says in [(np.zeros((3, 3)), "one dimension"), (self.x * 1j, "is real")]:
             with self.assertRaisesRegex(ValueError, says):
-                call()
-
-    def test_inputs_of_all_kinds_are_taken_and_left_alone(self):
-        x = np.linspace(-1, 1, 600) ** 2
-        kept = x.copy()
-        for kind in (x.tolist(), x.astype(np.float32), np.repeat(x, 2)[::2], np.round(x * 100).astype(int)):
-            f, p = stribeck.dsp.envelope_spectrum(kind, 100.0)
-            self.assertEqual((f.shape, p.shape, p.dtype), ((301,), (301,), np.float64))
-        stribeck.dsp.envelope_spectrum(x, 100.0)
-        np.testing.assert_array_equal(x, kept)
+                stribeck.analyse(signal, self.fs)
 
     def test_help_reads_well(self):
         for thing in map(stribeck.__dict__.get, stribeck.__all__):
             self.assertGreater(len(thing.__doc__ or ""), 40, thing)
-        for thing in map(stribeck.dsp.__dict__.get, stribeck.dsp.__all__):
-            self.assertGreater(len(thing.__doc__ or ""), 15, thing)
-            self.assertIn(thing.__name__, stribeck.dsp.__all__)
 
     def test_every_native_function_has_its_stub(self):
         import inspect

@@ -22,7 +22,6 @@ use stribeck_store::run_dir::{Run, RunDir, write_atomic};
 use crate::out::{caution, say};
 use crate::place::{Place, shown};
 use crate::shelf::existing;
-use crate::transfer::Transfer;
 
 /// Channel of the times of samples.
 const TIME: &str = "time_s";
@@ -43,14 +42,9 @@ pub struct Options {
     /// quality=30, noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
-    /// Leads the force of the rolling elements on the outer ring to a sensor first: "mass=12, stiffness=2e8,
-    /// damping=0.02", several modes with `;` between them. Only what that sensor shows is written, as
-    /// path.ax_m_s2 and path.ay_m_s2
-    #[arg(long, value_name = "PATH")]
-    path: Option<String>,
     /// Writes what the sensor of a machine records instead, in m/s²: that of the scene, or the one in FILE, which
     /// `stribeck machine` writes
-    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["path", "sensor", "channels"])]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["sensor", "channels"])]
     machine: Option<Option<PathBuf>>,
     /// Samples a second of a sound [Hz]: 44100 or 48000 [default: 48000]
     #[arg(long, value_name = "HZ", value_parser = sound::rate)]
@@ -114,13 +108,9 @@ impl Format {
         }
     }
 
-    /// Whether signals are written, in their own unit; `recorded` says that a sensor recorded them.
-    fn holds_signals(self, recorded: bool) -> bool {
-        match self {
-            Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64 => true,
-            Self::Wav => recorded,
-            Self::Pvd | Self::Inp | Self::Msh | Self::Radioss => false,
-        }
+    /// Whether signals are written, in their own unit.
+    fn holds_signals(self) -> bool {
+        matches!(self, Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64)
     }
 }
 
@@ -156,13 +146,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             );
         }
     }
-    if options.path.is_some() && !options.to.holds_signals(options.sensor.is_some()) {
-        bail!(
-            "`--path` makes signals: use it with `--to` csv, npz, mat, uff, parquet or wav64, or with wav \
-             and `--sensor`"
-        );
-    }
-    if options.machine.is_some() && !options.to.holds_signals(false) {
+    if options.machine.is_some() && !options.to.holds_signals() {
         bail!("`--machine` makes a signal: use it with `--to` csv, npz, mat, uff, parquet or wav64");
     }
     if let Some(out) = &options.out {
@@ -229,11 +213,6 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
     let mut recording = Recording::open(dir.trace())?;
     if let Some(machine) = &options.machine {
         recording.channels = crate::machine::channels(run, machine.as_deref(), place)?;
-    }
-    if let Some(path) = &options.path {
-        let time = recording.channels.iter().filter(|c| c.name == TIME).cloned();
-        let made = Transfer::read(path)?.at_sensor(&recording)?;
-        recording.channels = time.chain(made).collect();
     }
     // Whatever is chosen keeps its times: a run's first sample is not at zero.
     let chosen = |c: &Channel| {

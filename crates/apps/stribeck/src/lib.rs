@@ -55,8 +55,6 @@ mod simulate;
 mod stiffness;
 #[cfg(feature = "full")]
 mod sweep;
-#[cfg(feature = "full")]
-mod transfer;
 mod validate;
 
 use std::process::ExitCode;
@@ -178,9 +176,6 @@ pub enum Command {
     /// Writes the completions of commands and flags for a shell
     #[command(after_help = "Example: stribeck completions bash > stribeck.bash")]
     Completions(shell::Completions),
-    /// Writes the pages of the manual
-    #[command(after_help = "Example: stribeck man ~/.local/share/man/man1")]
-    Man(shell::Man),
 }
 
 impl Command {
@@ -197,7 +192,6 @@ impl Command {
                 | Self::Compare(_)
                 | Self::Export(_)
                 | Self::Completions(_)
-                | Self::Man(_)
         )
     }
 
@@ -224,7 +218,6 @@ impl Command {
             Self::Open(options) => open::run(options, place),
             Self::Rm(options) => remove::run(options, place),
             Self::Completions(options) => shell::completions(options),
-            Self::Man(options) => shell::man(options),
         }
     }
 }

@@ -446,13 +446,11 @@ impl Dynamics {
     /// Sums the elements of every tile and moves its nodes.
     fn sweep_tiles(&mut self, parameters: StepParameters, evaluation: Option<&Evaluation>) {
         let State { x, y, vx, vy, springs, .. } = &mut self.state;
-        let mut branches = BranchFields {
+        let path = springs.path.as_mut();
+        let branches = BranchFields {
+            path: path.map(|path| path.each_mut().map(|field| &mut field[..])).unwrap_or_default(),
             held: springs.held.each_mut().map(|field| &mut field[..]),
-            ..BranchFields::default()
         };
-        for (to, of) in branches.paths.iter_mut().zip(&mut springs.paths) {
-            *to = of.each_mut().map(|field| &mut field[..]);
-        }
         let NodeForces { fx, fy } = &mut self.forces;
         let fields = TileFields { x, y, vx, vy, fx, fy, branches };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };

@@ -58,12 +58,12 @@ impl Dynamics {
         for field in [&s.x, &s.y, &s.vx, &s.vy] {
             check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
         }
-        let ((branches, spins), springs) = (s.springs.counts(), self.springs.as_ref());
-        let own = self.state.springs.paths.len();
+        let SpringState { path, held: forces, spins, .. } = &s.springs;
+        let (spins, springs) = (spins.len(), self.springs.as_ref());
+        let [branches, own] = [path, &self.state.springs.path].map(|path| usize::from(path.is_some()));
         check_count("branches of the snapshot", branches, own, "those of the structural damping")?;
         let held = if own == 0 { 0 } else { slots };
-        let SpringState { paths, held: forces, .. } = &s.springs;
-        for len in paths.iter().flatten().map(|path| path.len()).chain(forces.each_ref().map(|f| f.len())) {
+        for len in path.iter().flatten().map(|path| path.len()).chain(forces.each_ref().map(|f| f.len())) {
             check_count("slots of the snapshot", len, held, "those of the model")?;
         }
         let bodies = if spins == 0 { 0 } else { springs.map_or(0, |springs| springs.bodies.len()) };

@@ -1,5 +1,5 @@
-//! Structural damping in motion: when its branches are evaluated, how fast their bodies turn, what their
-//! springs hold and their dashpots lose (THEORY §2.8).
+//! Structural damping in motion: when its branch is evaluated, how fast damped bodies turn, what springs
+//! hold and dashpots lose (THEORY §2.8).
 
 use crate::{
     dynamics::{DampedBody, Dynamics, Springs},
@@ -61,15 +61,14 @@ impl Dynamics {
             }
             tile.structural = mark;
         }
-        let branches = damping.map_or(0, |d| d.branches().len());
         let slots = if damping.is_some() { self.layout().len() } else { 0 };
-        let paths = (0..branches).map(|_| [Field::zeros(slots), Field::zeros(slots)]).collect();
+        let path = damping.map(|_| [Field::zeros(slots), Field::zeros(slots)]);
         let held = [Field::zeros(slots), Field::zeros(slots)];
         self.springs = damping.map(|damping| Springs {
             damping: damping.clone(),
             bodies: chosen().map(|&body| DampedBody { places: self.layout().places(body) }).collect(),
         });
-        self.state.springs = SpringState { paths, held, ..SpringState::default() };
+        self.state.springs = SpringState { path, held, ..SpringState::default() };
         self.make_room_to_see_ahead();
         Ok(())
     }
@@ -93,7 +92,7 @@ impl Dynamics {
     /// Elastic energy of the elements at the present positions [J]; adds up the energy of the springs and the
     /// heat of the dashpots until then. As [`Dynamics::step`], to be called from within the pool.
     ///
-    /// All that branches take is the work of their forces: elements are stiffer by Σ g, which is the change
+    /// All that a branch takes is the work of its forces: elements are stiffer by g, which is the change
     /// of an energy, and the rest is the work of the forces that are held.
     pub fn measure_elastic_energy(&mut self) -> ElasticEnergy {
         let Some(share) = self.structural_damping().map(|d| d.stiffening(f64::INFINITY) - 1.0) else {
@@ -163,13 +162,13 @@ impl Dynamics {
         }
     }
 
-    /// Action of the branches in the present step, if they are evaluated in it.
+    /// Action of the branch in the present step, if it is evaluated in it.
     pub(crate) fn evaluation(&mut self) -> Option<Evaluation> {
         let (step, dt) = (self.state.step, self.time_step());
         let damping = &self.springs.as_ref().filter(|_| step >= self.state.springs.next)?.damping;
         let until = damping.steps_until_next(dt, step);
         let since = self.state.springs.evaluated.map(|last| step - last);
-        let evaluation = Evaluation::new(damping.branches(), dt, since, until);
+        let evaluation = Evaluation::new(damping.branch(), dt, since, until);
         if self.state.springs.at_start.is_none() {
             let [_, damped] = self.energies_with_damped();
             self.state.springs.at_start = Some(damped.strain + damped.hourglass);

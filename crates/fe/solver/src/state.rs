@@ -28,8 +28,8 @@ pub struct State {
 /// State of the springs and dashpots of structural damping.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SpringState {
-    /// Positions through the low-pass of each branch (x, y) [m], one value a slot, at the last evaluation.
-    pub(crate) paths: Vec<[Field; 2]>,
+    /// Positions through the low-pass of the branch (x, y) [m], one value a slot, at the last evaluation.
+    pub(crate) path: Option<[Field; 2]>,
     /// Forces that nodes are pushed with until the next evaluation (x, y) [N], rounded to single precision:
     /// every step reads them.
     pub(crate) held: [Field<f32>; 2],
@@ -47,13 +47,6 @@ pub struct SpringState {
     pub(crate) at_start: Option<f64>,
     /// Heat and energy of the springs when they were last asked for [J].
     pub(crate) loss: f64,
-}
-
-impl SpringState {
-    /// Paths, and the bodies whose spins are known.
-    pub(crate) fn counts(&self) -> (usize, usize) {
-        (self.paths.len(), self.spins.len())
-    }
 }
 
 /// Energy counted step by step [J].

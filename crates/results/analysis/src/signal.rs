@@ -74,15 +74,6 @@ pub fn smoothed_peak(signal: &[f64], interval_s: f64, width_s: f64) -> Option<f6
     means.into_iter().map(f64::abs).max_by(f64::total_cmp)
 }
 
-/// Root mean square over `span_s` from sample `first` on of the running mean over `width_s` about each
-/// sample; `None` where the signal is too short.
-pub fn smoothed_rms(signal: &[f64], interval_s: f64, first: usize, span_s: f64, width_s: f64) -> Option<f64> {
-    let [count, width] = [span_s, width_s].map(|time| samples(time, interval_s));
-    let from = first.checked_sub((width - 1) / 2)?;
-    let about = signal.get(from..from + count + width - 1)?;
-    Some((running_mean(about, width).iter().map(|m| m * m).sum::<f64>() / count as f64).sqrt())
-}
-
 /// Samples in a time, at least one.
 fn samples(time_s: f64, interval_s: f64) -> usize {
     (time_s / interval_s).round().max(1.0) as usize
@@ -113,14 +104,5 @@ mod tests {
         let signal: Vec<f64> = (0..400).map(|n| tone[n] + f64::from(u8::from(n >= 200))).collect();
         assert!((smoothed_peak(&signal, 1e-5, 20e-5).unwrap() - 1.0).abs() < 1e-12);
         assert_eq!(smoothed_peak(&signal[..10], 1e-5, 20e-5), None);
-        // Means over a period: nothing before the step, one behind it, and a ramp of twenty samples between.
-        let rms = |first| smoothed_rms(&signal, 1e-5, first, 50e-5, 20e-5);
-        assert!(rms(100).unwrap() < 1e-12);
-        assert!((rms(300).unwrap() - 1.0).abs() < 1e-12);
-        let ramp: f64 = (1..20).map(|n| (f64::from(n) / 20.0).powi(2)).sum();
-        let expected = ((ramp + 21.0) / 50.0).sqrt();
-        assert!((rms(180).unwrap() - expected).abs() < 1e-12, "{:?} {expected}", rms(180));
-        assert_eq!((rms(5), rms(380)), (None, None));
-        assert!((smoothed_rms(&signal, 1e-5, 100, 100e-5, 1e-5).unwrap() - 3.0 / 2f64.sqrt()).abs() < 1e-12);
     }
 }

@@ -32,7 +32,7 @@
 //! | the frequency and amplitude of a line, and whether it stands out | [`Spectrum::peak`], [`Spectrum::sinusoid`], [`Spectrum::stands_above_db`] |
 //! | how much there is in a band | [`Spectrum::band_rms`], [`Spectrum::velocity_rms`] |
 //! | which frequencies can be resolved | [`Resolution`] |
-//! | a record without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
+//! | a record without one tone | [`Notch`] |
 //! | the repetition rate of impulses | [`EnvelopeSpectrum`], where [`PeriodCount`] finds the record long enough |
 //! | the band of impulses | [`fast_kurtogram`], [`BandEnvelopes`] for records of any length |
 //! | the rate at which a part of the spectrum is modulated | [`spectral_correlation`] |
@@ -40,7 +40,7 @@
 //! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | the times of impacts behind an unknown path | [`prewhitened_power`] |
-//! | the signal of a sensor behind some modes, and the signal before them | [`Response`] |
+//! | the signal of a sensor behind some modes | [`Response`] |
 //! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | the record at another rate | [`resample_poly`] |
 //! | a computed signal as a sensor and its recorder would have recorded it | [`Sensor`] |
@@ -132,12 +132,12 @@ pub use options::{Averaging, Detrend, WelchOptions};
 pub use peak::{Peak, Sinusoid};
 pub use prewhitened::prewhitened_power;
 pub use resample::resample_poly;
-pub use response::{Mode, Response, Undone};
+pub use response::{Mode, Response};
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use sound::Sound;
 pub use spacing::{EventSpacing, Spacing, event_spacing, passage_spacing};
-pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
+pub use spectrogram::{Spectrogram, Spectrograph, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
 pub use window::Window;

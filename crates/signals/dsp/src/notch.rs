@@ -1,4 +1,4 @@
-//! The second-order notch of `scipy.signal.iirnotch`, with the three ways of running it over a record.
+//! The second-order notch of `scipy.signal.iirnotch`, with the two ways of running it over a record.
 
 use std::f64::consts::TAU;
 
@@ -6,10 +6,6 @@ use biquad::{Biquad, Coefficients, DirectForm2Transposed, Hertz, Type};
 
 use crate::error::{check_frequency, check_positive, check_signal};
 use crate::{Error, Result};
-
-/// Samples by which [`Notch::filtfilt`] extends a record at either end: three times the number of
-/// coefficients, scipy's default.
-const PADDING: usize = 9;
 
 /// A filter that removes a narrow band about one frequency and passes everything else.
 ///
@@ -95,7 +91,6 @@ impl Notch {
     }
 
     /// Magnitude of the response of one pass at a frequency [dB], 0 or negative, −∞ at the centre.
-    /// [`Notch::filtfilt`] has twice this.
     ///
     /// # Errors
     /// [`Error::OutsideNyquist`] for a frequency outside 0 to half the sample rate.
@@ -142,26 +137,6 @@ impl Notch {
     pub fn filter_from_first(&self, signal: &[f64]) -> Result<Vec<f64>> {
         check_signal(signal, 1, "a filter")?;
         Ok(self.pass_from(signal[0], signal.iter().copied()))
-    }
-
-    /// A pass forwards and one backwards, `scipy.signal.filtfilt(b, a, x)` with its default odd extension of
-    /// nine samples: no delay, twice the decibels, width at −6 dB f₀/Q. Events ring before they happen, too.
-    ///
-    /// # Errors
-    /// [`Error::TooShort`] for fewer than ten samples, [`Error::NotFinite`] for a bad sample.
-    pub fn filtfilt(&self, signal: &[f64]) -> Result<Vec<f64>> {
-        check_signal(signal, PADDING + 1, "zero-phase filtering")?;
-        let (first, last) = (signal[0], signal[signal.len() - 1]);
-        let before = signal[1..=PADDING].iter().rev().map(|x| 2.0 * first - x);
-        let after = signal.iter().rev().skip(1).take(PADDING).map(|x| 2.0 * last - x);
-        let extended: Vec<f64> = before.chain(signal.iter().copied()).chain(after).collect();
-
-        let forwards = self.pass_from(extended[0], extended.into_iter());
-        let mut both = self.pass_from(forwards[forwards.len() - 1], forwards.into_iter().rev());
-        both.truncate(both.len() - PADDING);
-        both.reverse();
-        both.truncate(signal.len());
-        Ok(both)
     }
 
     /// One pass over a signal that was at `level` for ever.

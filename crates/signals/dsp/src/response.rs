@@ -1,5 +1,4 @@
-//! Frequency responses between a place and a sensor, in modes or by gains, applied to a signal and divided out
-//! of one.
+//! Frequency responses between a place and a sensor, in modes or by gains, applied to a signal.
 //!
 //! A response multiplies the lines of the signal's transform by its own values at their frequencies, so a
 //! causal response stays one, and phases are those of the response. A response of acceleration to force says
@@ -18,12 +17,8 @@ use crate::{Error, Result};
 
 /// A ringing has ended when it has fallen to this part.
 const ENDED: f64 = 1e-3;
-/// What regularises a division, over the median magnitude of the response in its band.
-const REGULARISED: f64 = 0.05;
 /// Lines of a causal response: those of 12.8 kHz are 3 Hz apart.
 const CAUSAL_LINES: usize = 4096;
-/// A line is given back where at least this part of it is.
-const GIVEN_BACK: f64 = 0.9;
 
 /// One mode of a structure: acceleration by a force at the place of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,17 +79,6 @@ enum Form {
     Sum(Vec<Response>),
     /// The first, and an all-pass behind it that dies away with this time constant [s].
     Ringing(Box<Response>, f64),
-}
-
-/// A signal out of which a response was divided.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Undone {
-    /// The signal at the place before the response.
-    pub signal: Vec<f64>,
-    /// Lowest and highest frequency [Hz] of which at least 90 % are given back.
-    pub band_hz: (f64, f64),
-    /// Share of the frequencies between them that are.
-    pub share: f64,
 }
 
 impl Response {
@@ -178,46 +162,11 @@ impl Response {
     /// # Errors
     /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`].
     pub fn through(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Vec<f64>> {
-        check(signal, sample_rate_hz)?;
-        Ok(self.multiplied(signal, sample_rate_hz, |hz| self.at(hz)))
-    }
-
-    /// The input of the response, from its output: each line over the response, regularised as
-    /// H*/(|H|² + ε²) with ε a twentieth of the median magnitude in the band, so that noise is not magnified
-    /// where the response passes little.
-    pub fn undo(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Undone> {
-        check(signal, sample_rate_hz)?;
-        let (low, high) = (sample_rate_hz / signal.len() as f64, 0.5 * sample_rate_hz);
-        let grid: Vec<f64> = (0..1000).map(|n| low + (f64::from(n) + 0.5) * (high - low) / 1000.0).collect();
-        let power = self.regularisation(&grid);
-        let given_back: Vec<bool> = grid
-            .iter()
-            .map(|hz| self.at(*hz).norm_sqr())
-            .map(|passed| passed / (passed + power) >= GIVEN_BACK)
-            .collect();
-        let first = given_back.iter().position(|is| *is).unwrap_or(0);
-        let last = given_back.iter().rposition(|is| *is).unwrap_or(0);
-        let among = &given_back[first..=last];
-        let share = among.iter().filter(|is| **is).count() as f64 / among.len() as f64;
-        let inverse = |hz: f64| {
-            let h = self.at(hz);
-            h.conj() / (h.norm_sqr() + power)
-        };
-        let signal = self.multiplied(signal, sample_rate_hz, inverse);
-        Ok(Undone { signal, band_hz: (grid[first], grid[last]), share })
-    }
-
-    /// ε² of a division.
-    fn regularisation(&self, grid: &[f64]) -> f64 {
-        let mut sorted: Vec<f64> = grid.iter().map(|hz| self.at(*hz).norm()).collect();
-        sorted.sort_by(f64::total_cmp);
-        (REGULARISED * sorted[sorted.len() / 2]).powi(2).max(f64::MIN_POSITIVE)
-    }
-
-    fn multiplied(&self, signal: &[f64], rate_hz: f64, by: impl Fn(f64) -> Complex<f64>) -> Vec<f64> {
+        check_positive("sample_rate_hz", sample_rate_hz)?;
+        check_signal(signal, 16, "a response")?;
         let mean = signal.iter().sum::<f64>() / signal.len() as f64;
         let reach = signal.len() - 1;
-        let pad = ((self.rings_s() * rate_hz).ceil() as usize).clamp(1, reach);
+        let pad = ((self.rings_s() * sample_rate_hz).ceil() as usize).clamp(1, reach);
         let at = |n: usize| match n.checked_sub(pad) {
             None => signal[pad - n],
             Some(n) if n <= reach => signal[n],
@@ -230,7 +179,7 @@ impl Response {
         let scale = 1.0 / count as f64;
         lines[0] = Complex::default();
         for n in 1..=count / 2 {
-            let h = by(n as f64 * rate_hz * scale) * scale;
+            let h = self.at(n as f64 * sample_rate_hz * scale) * scale;
             if 2 * n == count {
                 // Half the sample rate has no phase.
                 lines[n] *= h.re;
@@ -240,13 +189,8 @@ impl Response {
             }
         }
         planner.plan_fft_inverse(count).process(&mut lines);
-        lines[pad..pad + signal.len()].iter().map(|z| z.re).collect()
+        Ok(lines[pad..pad + signal.len()].iter().map(|z| z.re).collect())
     }
-}
-
-fn check(signal: &[f64], sample_rate_hz: f64) -> Result<()> {
-    check_positive("sample_rate_hz", sample_rate_hz)?;
-    check_signal(signal, 16, "a response")
 }
 
 /// Delays of the all-passes over the time in which they die away.

@@ -1,7 +1,7 @@
 //! Spectra over time: the course of a record's lines and bursts.
 
 use crate::error::check_signal;
-use crate::{Averaging, Result, Sides, Spectrum, Welch, WelchOptions};
+use crate::{Averaging, Result, Spectrum, Welch, WelchOptions};
 
 /// Spectra of the segments of a record, one after the other.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,27 +97,6 @@ pub fn spectrogram(signal: &[f64], sample_rate_hz: f64, options: &WelchOptions) 
         all.times_s.push(time_s);
         all.values.extend_from_slice(values);
     })?;
-    Ok(all)
-}
-
-/// `scipy.signal.spectrogram` in its mode `magnitude`: the magnitude of the short-time transform [unit/√Hz
-/// for a density, unit for a power spectrum], which counts one side only, so that the square is half of
-/// [`spectrogram`]'s one-sided values.
-pub fn magnitude_spectrogram(
-    signal: &[f64],
-    sample_rate_hz: f64,
-    options: &WelchOptions,
-) -> Result<Spectrogram> {
-    let two = WelchOptions { sides: Sides::Two, ..options.clone() };
-    let mut all = spectrogram(signal, sample_rate_hz, &two)?;
-    if options.sides == Sides::One {
-        let (all_lines, held) = (options.nfft, options.nfft / 2 + 1);
-        all.frequencies_hz.truncate(held);
-        // An even transform calls half its rate negative.
-        all.frequencies_hz.iter_mut().for_each(|hz| *hz = hz.abs());
-        all.values = all.values.chunks_exact(all_lines).flat_map(|row| &row[..held]).copied().collect();
-    }
-    all.values.iter_mut().for_each(|power| *power = power.sqrt());
     Ok(all)
 }
 

@@ -30,7 +30,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Callable
 
-from . import _progress, _ron, _stribeck, dsp
+import numpy as np
+
+from . import _progress, _ron, _stribeck
 from ._program import Campaign, _analysed, _python_words, campaign, command, export, validate
 
 __all__ = [
@@ -40,7 +42,6 @@ __all__ = [
     "campaign",
     "command",
     "defect_orders",
-    "dsp",
     "export",
     "load",
     "run",
@@ -262,7 +263,16 @@ def analyse(
         raise TypeError("analyse() of samples needs rate_hz, the samples a second")
     speed = float(speed_rpm) if speed_rpm is not None else None
     with _python_words():
-        return json.loads(_stribeck.analyse(dsp._samples(signal), rate_hz, bearing, speed, unit, name))
+        return json.loads(_stribeck.analyse(_samples(signal), rate_hz, bearing, speed, unit, name))
+
+
+def _samples(x: Any) -> Any:
+    if np.iscomplexobj(x):
+        raise ValueError("a signal is real, this is complex: take its real part or its magnitude")
+    samples = np.ascontiguousarray(x, dtype=np.float64)
+    if samples.ndim != 1:
+        raise ValueError(f"a signal has one dimension, this has the shape {samples.shape}: take one channel")
+    return samples
 
 
 def defect_orders(bearing: str) -> dict[str, float]:

@@ -17,7 +17,6 @@ use stribeck_store::run_dir::RunDir;
 use super::{clocks, gaps, turning};
 use crate::out::tell;
 use crate::place::Place;
-use crate::transfer::Transfer;
 
 /// Flags of every command that reads records: how they are read, and their machine.
 #[derive(Debug, Clone, clap::Args)]
@@ -77,11 +76,6 @@ pub(crate) struct Reading {
     /// Unit of the samples after that
     #[arg(long)]
     pub(super) unit: Option<String>,
-    /// Path from the bearing to the sensor: "mass=12, stiffness=2e8, damping=0.02", several modes with `;`
-    /// between them. It is divided out of a record, which is then the force at the bearing; the force of a
-    /// run goes through it
-    #[arg(long, value_name = "PATH")]
-    pub(super) path: Option<String>,
 }
 
 /// The user's statement of the speed [1/min].
@@ -224,25 +218,17 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     let (mut file, scene) = located(asked, place)?;
     // What its machine's sensor records is a signal as a measured one.
     let at_sensor = file.with_file_name("machine.npy");
-    let of_machine =
-        scene.is_some() && options.channel.is_none() && options.path.is_none() && at_sensor.is_file();
+    let of_machine = scene.is_some() && options.channel.is_none() && at_sensor.is_file();
     if of_machine {
         file = at_sensor;
     }
     let recording = Recording::open(&file)?;
-    let picked = pick(&recording, options.channel.as_deref(), scene.is_some())?;
-    let path = options.path.as_deref().map(Transfer::read).transpose()?;
-    let behind_path = match (&path, &scene) {
-        (Some(path), Some(_)) => Some(path.of_run(&recording, picked)?),
-        _ => None,
-    };
-    let channel = behind_path.as_ref().map_or(picked, |(channel, _)| channel);
+    let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
         let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
         bail!("`{}` does not say how fast it was sampled: give `--rate-hz`{notes}", file.display());
     };
     let mut notes = recording.notes.clone();
-    notes.extend(behind_path.iter().map(|(_, note)| note.clone()));
     if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
         let same = (given / said - 1.0).abs() <= SAME_RATE;
         ensure!(
@@ -262,12 +248,7 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     let (channel, from) = (&whole.channel, whole.from);
     let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
-    let mut scaled = channel.scaled(options.scale).in_unit(unit);
-    if let (Some(path), None) = (&path, &scene) {
-        let (before, note) = path.before(&scaled, rate_hz)?;
-        scaled = before.from_time(channel.start_s);
-        notes.push(note);
-    }
+    let scaled = channel.scaled(options.scale).in_unit(unit);
     let (mut machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
     let pulses = pulses.map(|all| {
         // They count from the beginning of the file, and a tachometer may go on behind the end of the record.
@@ -293,11 +274,10 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         None => None,
     };
     let of_run = scene.is_some() && !of_machine;
-    let quality = match (&over_angle, &options.path) {
+    let quality = match &over_angle {
         _ if of_run => Some(Vec::new()),
-        (None, None) => None,
-        (Some(_), _) => Some(quality::of(channel, rate_hz, None)?),
-        (None, Some(_)) => Some(quality::of(channel, rate_hz, machine.speed_rpm)?),
+        None => None,
+        Some(_) => Some(quality::of(channel, rate_hz, None)?),
     };
     let Some((even, even_hz)) = over_angle else {
         return Ok(Read { signal: scaled, rate_hz, machine, notes, of_run, turning: None, quality });

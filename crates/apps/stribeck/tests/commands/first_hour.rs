@@ -362,10 +362,6 @@ fn behaves_shells_readers_and_scripts_get_what_they_take() {
     {
         says(&desk.succeeds(&["completions", shell]), &[word, "compare", "sweep"]);
     }
-    desk.succeeds("man pages");
-    for page in ["stribeck.1", "stribeck-compare.1", "stribeck-simulate.1"] {
-        assert!(desk.text(&format!("pages/{page}")).contains(".TH"), "{page}");
-    }
     let all = json(&desk.succeeds("bearings --json"));
     let known =
         all.as_array().expect("a list").iter().find(|b| b["name"] == "6205").expect("of the catalogue");

@@ -84,15 +84,6 @@ const COMPLETIONS: [Mistake; 5] = [
     (&["completions", "--bash"], &["'--bash'", "Example: stribeck completions bash"]),
 ];
 
-/// No folder, a command in its place beside one, a file, a place that cannot be written, a flag.
-const MAN: [Mistake; 5] = [
-    (&["man"], &["<FOLDER>", "Example: stribeck man"]),
-    (&["man", "simulate", "pages"], &["'pages'", "Example: stribeck man"]),
-    (&["man", "/dev/null"], &["cannot write pages to `/dev/null`", "such as `man`"]),
-    (&["man", "/proc/pages"], &["cannot write pages to `/proc/pages`", "such as `man`"]),
-    (&["man", "--out=pages"], &["'--out'", "Example: stribeck man"]),
-];
-
 /// No run yet, a run that is not there, a rate of no sound card, slower than a sound can be, another format.
 const EXPORT: [Mistake; 5] = [
     (&["export", "--to=wav"], &["no runs in `runs`", "stribeck simulate"]),
@@ -113,7 +104,7 @@ const BEARINGS: [Mistake; 5] = [
 
 #[test]
 fn refuses_the_likeliest_mistakes_with_the_way_out() {
-    let all = [COMPARE, SWEEP, NEW, LIST, OPEN, RM, PLAN, COMPLETIONS, MAN, EXPORT, BEARINGS];
+    let all = [COMPARE, SWEEP, NEW, LIST, OPEN, RM, PLAN, COMPLETIONS, EXPORT, BEARINGS];
     let desk = Desk::new("mistakes");
     let mut wrong = Vec::new();
     for (words, told) in all.iter().flatten() {

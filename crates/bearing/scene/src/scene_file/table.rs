@@ -117,18 +117,6 @@ impl MachineScene {
     }
 }
 
-impl Scene {
-    /// The texts of all its mesh files.
-    pub fn mesh_texts(&self) -> impl Iterator<Item = &str> {
-        let housing = match &self.housing {
-            HousingScene::Mesh(housing) => Some(housing.text.as_str()),
-            _ => None,
-        };
-        let rings = [&self.outer_ring_mesh, &self.inner_ring_mesh].into_iter().flatten();
-        housing.into_iter().chain(rings.map(|ring| ring.text.as_str()))
-    }
-}
-
 /// Inserts the content of the mesh `file` of the group `path` into `text`, unless it is there.
 fn read_mesh(
     path: &str,

@@ -161,7 +161,7 @@ impl Assembly {
             DampedBody::Rollers => self.rollers.iter().map(|(_, roller)| roller.body).collect(),
         });
         let bodies = bodies.filter(|body| self.model.behaviour[*body].is_elastic());
-        let damping = StructuralDamping::over_band(band.ratio, band.band, chosen.branches, bodies.collect())?;
+        let damping = StructuralDamping::over_band(band.ratio, band.band, bodies.collect())?;
         Ok(Some(damping))
     }
 

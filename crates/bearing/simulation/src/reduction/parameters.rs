@@ -163,16 +163,12 @@ fn formed(outline: &[[f64; 2]], relief: Option<&Relief>, circle: Circle) -> Vec<
 }
 
 fn damping(scene: &ResolvedScene) -> Result<Damping, Error> {
-    let branches = match (&scene.written.solver.structural_damping, scene.structural_damping) {
-        (Some(chosen), Some(band)) => {
-            StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
-                .branches()
-                .iter()
-                .map(|branch| Branch { stiffness: branch.stiffness, relaxation_time: branch.relaxation_time })
-                .collect()
-        }
-        _ => Vec::new(),
-    };
+    let band = scene.structural_damping;
+    let branch =
+        band.map(|band| StructuralDamping::over_band(band.ratio, band.band, Vec::new())).transpose()?;
+    let branch = branch.map(|damping| damping.branch());
+    let branch = branch.map(|b| Branch { stiffness: b.stiffness, relaxation_time: b.relaxation_time });
+    let branches = branch.into_iter().collect();
     let frame = match scene.written.solver.damping_frame {
         SceneFrame::Rolling => DampingFrame::Rolling,
         // Its rollers do not deform: their own motion is all of theirs.

@@ -1,7 +1,5 @@
 //! The node fields of tiles, borrowed for a step.
 
-use crate::structural_damping::MAX_BRANCHES;
-
 /// The node fields of one tile, or of several that follow each other.
 #[derive(Default)]
 pub(crate) struct TileFields<'a> {
@@ -18,8 +16,8 @@ pub(crate) struct TileFields<'a> {
 /// Those of structural damping; empty where there is none.
 #[derive(Default)]
 pub(crate) struct BranchFields<'a> {
-    /// Positions through the low-pass of each branch [m].
-    pub(crate) paths: [[&'a mut [f64]; 2]; MAX_BRANCHES],
+    /// Positions through the low-pass of the branch [m].
+    pub(crate) path: [&'a mut [f64]; 2],
     /// Forces that nodes are pushed with until the next evaluation [N].
     pub(crate) held: [&'a mut [f32]; 2],
 }
@@ -50,7 +48,7 @@ impl BranchFields<'_> {
         fn both<'b, T>(of: &'b mut [&mut [T]; 2]) -> [&'b mut [T]; 2] {
             of.each_mut().map(|v| &mut **v)
         }
-        BranchFields { paths: self.paths.each_mut().map(both), held: both(&mut self.held) }
+        BranchFields { path: both(&mut self.path), held: both(&mut self.held) }
     }
 
     fn split_at(mut self, at: usize) -> (Self, Self) {
@@ -59,8 +57,7 @@ impl BranchFields<'_> {
             (*whole, *rest) = all.split_at_mut(at.min(all.len()));
         }
         let mut rest = Self::default();
-        let paths = self.paths.iter_mut().flatten().zip(rest.paths.iter_mut().flatten());
-        paths.for_each(|(path, rest)| split(path, rest, at));
+        self.path.iter_mut().zip(&mut rest.path).for_each(|(path, rest)| split(path, rest, at));
         self.held.iter_mut().zip(&mut rest.held).for_each(|(held, rest)| split(held, rest, at));
         (self, rest)
     }

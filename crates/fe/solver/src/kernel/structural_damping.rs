@@ -1,4 +1,4 @@
-//! Structural damping: branches answer to the nodes' path through a low-pass, and their forces are held from
+//! Structural damping: the branch answers to the nodes' path through a low-pass, and its forces are held from
 //! one evaluation to the next, some steps later (THEORY §2.8).
 
 use pulp::{Simd, WithSimd};
@@ -10,59 +10,41 @@ use crate::{
         stiffness_damping::{Extrapolated, tile_forces},
         tile::{Tile, TileStructural},
     },
-    structural_damping::{Branch, MAX_BRANCHES},
+    structural_damping::Branch,
 };
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-/// Action of the branches in a step that evaluates them.
+/// Action of the branch in a step that evaluates it: its path q becomes `keep` q + (1 − `keep`) x, and stands
+/// for its spring half a step back: (1 + `back`) q − `back` x.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Evaluation {
-    all: [BranchStep; MAX_BRANCHES],
-    count: usize,
-    /// Σ g/(1 + Σ g): the stiffened elements of a tile times this are the springs of all branches.
+    /// Zero where springs are relaxed where the nodes are now: nothing is held yet.
+    keep: f64,
+    back: f64,
+    /// g/(1 + g): the stiffened elements of a tile times this are the springs of the branch.
     share: f64,
-    /// Whether springs are relaxed where the nodes are now: nothing is held yet.
-    first: bool,
     /// Time since the last evaluation, and from now to the middle of the steps until the next [s].
     since: f64,
     middle: f64,
 }
 
-/// One of them: its path q becomes `keep` q + (1 − `keep`) x, and stands for `weight` of all springs, half a
-/// step back: (1 + `back`) q − `back` x.
-#[derive(Debug, Clone, Copy, Default)]
-struct BranchStep {
-    keep: f64,
-    weight: f64,
-    back: f64,
-}
-
 impl Evaluation {
     /// `since` steps of `dt` [s] after the last evaluation, none for the first one, and `until` before the
     /// next.
-    pub(crate) fn new(branches: &[Branch], dt: f64, since: Option<u64>, until: u64) -> Self {
-        let sum: f64 = branches.iter().map(|b| b.stiffness).sum();
+    pub(crate) fn new(branch: Branch, dt: f64, since: Option<u64>, until: u64) -> Self {
+        let Branch { stiffness, relaxation_time } = branch;
         let passed = since.map_or(0.0, |steps| steps as f64 * dt);
-        let mut all = [BranchStep::default(); MAX_BRANCHES];
-        for (to, &Branch { stiffness, relaxation_time }) in all.iter_mut().zip(branches) {
-            *to = BranchStep {
-                keep: libm::exp(-passed / relaxation_time),
-                weight: stiffness / sum,
-                back: 0.5 * libm::expm1(dt / relaxation_time),
-            };
-        }
         Self {
-            all,
-            count: branches.len(),
-            share: sum / (1.0 + sum),
-            first: since.is_none(),
+            keep: since.map_or(0.0, |_| libm::exp(-passed / relaxation_time)),
+            back: 0.5 * libm::expm1(dt / relaxation_time),
+            share: stiffness / (1.0 + stiffness),
             since: passed,
             middle: 0.5 * (until - 1) as f64 * dt,
         }
     }
 }
 
-/// Evaluates the branches of a tile. Ghosts must have positions.
+/// Evaluates the branch of a tile. Ghosts must have positions.
 pub(crate) struct Evaluate<'a> {
     pub(crate) tile: &'a Tile,
     pub(crate) fields: TileFields<'a>,
@@ -97,17 +79,13 @@ impl WithSimd for Evaluate<'_> {
         let Self { tile, fields, scratch, parameters, evaluation } = self;
         let Some(structural) = &tile.structural else { return HeldWork::default() };
         let TileFields { x, y, vx, vy, branches, .. } = fields;
-        let BranchFields { paths, held: [held_x, held_y] } = branches;
+        let BranchFields { path, held: [held_x, held_y] } = branches;
         let (n, half) = (tile.slots.len(), 0.5 * parameters.dt);
         let (ways_x, ways_y) = ([&*x, &*vx], [&*y, &*vy]);
         let released = virial(held_x, ways_x, half, tile.own) + virial(held_y, ways_y, half, tile.own);
         let Extrapolated { x: seen_x, y: seen_y, fx, fy } = scratch;
         let (seen_x, seen_y) = (&mut seen_x[..n], &mut seen_y[..n]);
-        seen_x.fill(0.0);
-        seen_y.fill(0.0);
-        for (path, step) in paths.into_iter().zip(&evaluation.all).take(evaluation.count) {
-            follow(simd, structural, [x, y], path, [&mut *seen_x, &mut *seen_y], step, evaluation);
-        }
+        follow(simd, structural, [x, y], path, [&mut *seen_x, &mut *seen_y], evaluation);
         let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
         fx.fill(0.0);
         fy.fill(0.0);
@@ -139,7 +117,7 @@ fn virial(force: &[f32], [at, v]: [&[f64]; 2], half: f64, own: usize) -> f64 {
     columns.iter().sum::<f64>() + rest
 }
 
-/// Takes the path of one branch to the present and adds it to where the springs of all branches pull from.
+/// Takes the path of the branch to the present, and says where its springs pull from.
 ///
 /// Paths turn with the bodies: a rigid motion then leads to one and the same shift of all nodes, which gives
 /// no force.
@@ -150,17 +128,15 @@ fn follow<S: Simd>(
     [x, y]: [&[f64]; 2],
     [path_x, path_y]: [&mut [f64]; 2],
     [seen_x, seen_y]: [&mut [f64]; 2],
-    &BranchStep { keep, weight, back }: &BranchStep,
-    evaluation: &Evaluation,
+    &Evaluation { keep, back, since, middle, .. }: &Evaluation,
 ) {
     let turned = |time: f64| {
         let angles = structural.spin.map(|spin| spin * time);
         (angles.map(libm::cos), angles.map(libm::sin))
     };
-    let ((cos, sin), (cos_ahead, sin_ahead)) = (turned(evaluation.since), turned(evaluation.middle));
-    let keep = if evaluation.first { 0.0 } else { keep };
+    let ((cos, sin), (cos_ahead, sin_ahead)) = (turned(since), turned(middle));
     let [kept, new] = [keep, 1.0 - keep].map(|share| Vector::all(simd, share));
-    let [from_path, from_node] = [weight * (1.0 + back), -weight * back].map(|w| Vector::all(simd, w));
+    let [from_path, from_node] = [1.0 + back, -back].map(|w| Vector::all(simd, w));
     // A tile's slots are whole lines of cache.
     for i in (0..x.len()).step_by(Vector::<S>::LEN) {
         let lane = i % LANES;
@@ -173,8 +149,7 @@ fn follow<S: Simd>(
         qy.store(path_y, i);
         let (ux, uy) = (from_path.times_plus(qx, from_node * x), from_path.times_plus(qy, from_node * y));
         let (c, s) = (Vector::load(simd, &cos_ahead, lane), Vector::load(simd, &sin_ahead, lane));
-        let (tx, ty) = (Vector::load(simd, seen_x, i), Vector::load(simd, seen_y, i));
-        c.times_plus(ux, (-s).times_plus(uy, tx)).store(seen_x, i);
-        s.times_plus(ux, c.times_plus(uy, ty)).store(seen_y, i);
+        c.times_plus(ux, -(s * uy)).store(seen_x, i);
+        s.times_plus(ux, c * uy).store(seen_y, i);
     }
 }

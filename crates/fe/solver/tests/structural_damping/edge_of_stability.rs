@@ -50,12 +50,12 @@ fn analytic_the_edge_of_stability_is_that_of_the_stiffer_elements() {
     for (stiffness, over_step) in [(0.1, 300.0), (0.5, 30.0), (0.5, 3.0)] {
         let branch = Branch { stiffness, relaxation_time: over_step * undamped };
         let mut d = lay_out(&model);
-        damp(&mut d, &[branch], vec![0], 1.0);
+        damp(&mut d, branch, vec![0], 1.0);
         assert_close(d.time_step(), undamped / (1.0 + stiffness).sqrt(), BOUND, "critical step");
         let edge = undamped / (1.0 + stiffness).sqrt();
         let largest = |factor: f64| {
             let mut d = lay_out(&model);
-            damp(&mut d, &[branch], vec![0], 1.0);
+            damp(&mut d, branch, vec![0], 1.0);
             d.set_time_step(factor * edge).expect("a positive time step");
             let mut noise = Noise::new(6);
             for n in massive(&d) {

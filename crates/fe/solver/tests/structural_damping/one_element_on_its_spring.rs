@@ -68,7 +68,7 @@ fn converges_with_the_square_of_the_time_step() {
         .into_iter()
         .map(|steps| {
             let mut d = lay_out(&model);
-            damp(&mut d, &[branch], vec![0], 0.5);
+            damp(&mut d, branch, vec![0], 0.5);
             d.set_time_step(end / f64::from(steps)).expect("a positive step");
             let right = (0..4).find(|&n| model.motion[n] == NodeMotion::HeldY).expect("two nodes are free");
             let n = slot(&d, right);
