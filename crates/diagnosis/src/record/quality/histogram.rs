@@ -93,7 +93,8 @@ impl Histogram {
             let apart = (lowest - value).max(value - highest) / (highest - lowest);
             let at_end = value == first || value == last;
             let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
-            let is_often = peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
+            let is_often =
+                peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
             // What fills gaps stands in a few long runs.
             let is_scattered = runs > 1 && 2 * runs > samples(value);
             is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)

@@ -141,9 +141,11 @@ impl Inspection {
             found.extend(self.held(&gaps));
         }
         found.extend(self.straight());
-        if ends.is_empty() {
-            found.extend(self.silent());
+        let silent = if ends.is_empty() { self.silent() } else { None };
+        if ends.is_empty() && gaps.is_empty() && silent.is_none() {
+            found.extend(self.jump());
         }
+        found.extend(silent);
         match few {
             Some(levels) => found.push(self.coarse(levels)),
             // A gap makes steps of its own.
@@ -197,7 +199,6 @@ impl Inspection {
                     .to_owned(),
             ));
         }
-        found.extend(self.jump());
         found
     }
 
