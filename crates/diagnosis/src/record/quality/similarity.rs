@@ -6,7 +6,7 @@ use std::collections::HashMap;
 const PLACES: usize = 8;
 /// Ratio of the spreads of two places that no signal has, beside its scatter.
 const UNLIKE: f64 = 1.25;
-const SCATTER: f64 = 8.0;
+const SCATTER: f64 = 6.0;
 
 /// What a pattern of places is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub(super) fn pattern(samples: &[f64]) -> Option<(usize, Pattern)> {
     let steps: Vec<f64> = samples.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let found = (2..=PLACES).find_map(|places| {
         let (values, steps) = (spreads(samples, places), spreads(&steps, places));
-        let limit = UNLIKE + SCATTER / ((samples.len() / places) as f64).sqrt();
+        let limit = UNLIKE + SCATTER * places as f64 / (samples.len() as f64).sqrt();
         let is_unlike = |all: &[f64]| extremes(all).is_some_and(|(least, most)| most > limit * least);
         let stands = |all: &[f64]| all.contains(&0.0) && all.iter().any(|spread| *spread > 0.0);
         match () {
