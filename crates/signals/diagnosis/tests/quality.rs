@@ -226,8 +226,10 @@ fn spoilt(x: &[f64], how: usize, part: f64) -> (Kind, Vec<f64>) {
         x.iter_mut().filter(|_| noise.share() < 0.02 + 0.05 * part).for_each(|x| *x = value);
         x
     };
-    // Where the values begin anew, as a part of the largest.
-    let end = (0.3 + 0.35 * part) * x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    // Where the values begin anew: one in fifty to one in five does.
+    let mut sizes: Vec<f64> = x.iter().map(|x| x.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let end = sizes[((0.98 - 0.18 * part) * count as f64) as usize];
     let bytes = |x: f64| f64::from(((x.clamp(-32_768.0, 32_767.0)) as i16).swap_bytes());
     match how {
         0 => (Kind::Wrapped, x.iter().map(|x| wrapped(x / end * 32_768.0, 16)).collect()),

@@ -159,9 +159,16 @@ fn peer_measured_records_are_records_of_a_signal() {
         let Some(folder) = measured(folder) else { return };
         for file in std::fs::read_dir(folder).unwrap() {
             let recording = Recording::open(file.unwrap().path()).unwrap();
-            for channel in recording.channels.iter().filter(|channel| channel.len > 1000 && !channel.is_time) {
+            for channel in recording.channels.iter().filter(|channel| channel.len > 1000 && !channel.is_time)
+            {
                 let found = quality::of(channel, channel.rate_hz.unwrap_or(12_800.0), None).unwrap();
-                assert_eq!(quality::no_signal(&found), None, "{}: {}", recording.path.display(), channel.name);
+                assert_eq!(
+                    quality::no_signal(&found),
+                    None,
+                    "{}: {}",
+                    recording.path.display(),
+                    channel.name
+                );
                 channels += 1;
             }
         }

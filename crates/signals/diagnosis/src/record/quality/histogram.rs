@@ -37,12 +37,19 @@ impl Histogram {
         }
         let mut bins = vec![0.0; BINS];
         sorted.iter().for_each(|x| bins[(((x - low) / width) as usize).min(BINS - 1)] += 1.0);
-        let new = samples.iter().zip(samples.iter().skip(1)).filter(|(a, b)| a != b).map(|(_, b)| b + 0.0);
-        let mut begun: Vec<f64> =
-            samples.iter().take(1).copied().chain(new).filter(|x| x.is_finite()).collect();
-        begun.sort_unstable_by(f64::total_cmp);
-        let values: Vec<(f64, usize)> =
-            begun.chunk_by(|a, b| a == b).map(|all| (all[0], all.len())).collect();
+        // Of a run of equal samples the first counts.
+        let again = samples.windows(2).filter(|pair| pair[0] == pair[1] && pair[1].is_finite());
+        let mut again: Vec<f64> = again.map(|pair| pair[1]).collect();
+        again.sort_unstable_by(f64::total_cmp);
+        let mut at = 0;
+        let runs = |all: &[f64]| {
+            let from = at;
+            while again.get(at).is_some_and(|x| *x == all[0]) {
+                at += 1;
+            }
+            (all[0] + 0.0, all.len() + from - at)
+        };
+        let values: Vec<(f64, usize)> = sorted.chunk_by(|a, b| a == b).map(runs).collect();
         let mut frequent: Vec<usize> = (0..values.len()).collect();
         let rank = |at: &usize| std::cmp::Reverse(values[*at].1);
         if frequent.len() > FEW {
@@ -93,7 +100,8 @@ impl Histogram {
             let apart = (lowest - value).max(value - highest) / (highest - lowest);
             let at_end = value == first || value == last;
             let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
-            let is_often = peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
+            let is_often =
+                peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
             // What fills gaps stands in a few long runs.
             let is_scattered = runs > 1 && 2 * runs > samples(value);
             is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)

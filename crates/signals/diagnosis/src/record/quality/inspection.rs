@@ -141,9 +141,11 @@ impl Inspection {
             found.extend(self.held(&gaps));
         }
         found.extend(self.straight());
-        if ends.is_empty() {
-            found.extend(self.silent());
+        let silent = if ends.is_empty() { self.silent() } else { None };
+        if ends.is_empty() && gaps.is_empty() && silent.is_none() {
+            found.extend(self.jump());
         }
+        found.extend(silent);
         match few {
             Some(levels) => found.push(self.coarse(levels)),
             // A gap makes steps of its own.
@@ -197,7 +199,6 @@ impl Inspection {
                     .to_owned(),
             ));
         }
-        found.extend(self.jump());
         found
     }
 
@@ -264,7 +265,7 @@ impl Inspection {
         // What wraps has a converter's steps; noise that was made is as dense at its ends as in the middle.
         let is_wrapped = full.is_some() || quantum.is_some() && histogram.is_domed();
         let breaks_off = histogram.breaks_off() && is_wrapped && share > 1e-3;
-        if !hollow && !breaks_off && (full.is_none() || across < 2) {
+        if !hollow && !breaks_off && (full.is_none() || across < ACROSS) {
             return None;
         }
         let unsigned = |bits: i32| {
@@ -520,6 +521,8 @@ impl Inspection {
     }
 }
 
+/// Fewest steps across a range that whole numbers of a width fill: of sound ones one or two are as large by chance.
+const ACROSS: usize = 8;
 /// Share of steps at the largest ones from which on the slew rate is limited.
 const SLEWING: f64 = 0.02;
 /// Part of the usual level below which a stretch is silent.

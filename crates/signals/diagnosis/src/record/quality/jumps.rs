@@ -19,7 +19,7 @@ pub(super) fn full_range(low: f64, high: f64, quantum: f64) -> Option<(i32, bool
     BITS.into_iter().find_map(|bits| {
         let all = f64::from(bits).exp2();
         let fills = |lowest: f64| {
-            let near = |value: f64, end: f64| (value / quantum - end).abs() <= 0.005 * all;
+            let near = |value: f64, end: f64| (value / quantum - end).abs() <= 0.01 * all;
             near(low, lowest) && near(high, lowest + all - 1.0)
         };
         (fills(-0.5 * all) || fills(0.0)).then(|| (bits, fills(0.0)))

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 const PLACES: usize = 8;
 /// Ratio of the spreads of two places that no signal has, beside its scatter.
 const UNLIKE: f64 = 1.25;
-const SCATTER: f64 = 8.0;
+const SCATTER: f64 = 6.0;
 
 /// What a pattern of places is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub(super) fn pattern(samples: &[f64]) -> Option<(usize, Pattern)> {
     let steps: Vec<f64> = samples.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let found = (2..=PLACES).find_map(|places| {
         let (values, steps) = (spreads(samples, places), spreads(&steps, places));
-        let limit = UNLIKE + SCATTER / ((samples.len() / places) as f64).sqrt();
+        let limit = UNLIKE + SCATTER * places as f64 / (samples.len() as f64).sqrt();
         let is_unlike = |all: &[f64]| extremes(all).is_some_and(|(least, most)| most > limit * least);
         let stands = |all: &[f64]| all.contains(&0.0) && all.iter().any(|spread| *spread > 0.0);
         match () {
@@ -108,9 +108,9 @@ pub(super) fn repeats(samples: &[f64]) -> Option<Repeats> {
     (found.samples > 0).then_some(found)
 }
 
-/// Samples over which a rail hardly drifts, and bands below the highest of them, of this part of the range.
+/// Samples over which a rail hardly drifts, and bands below the highest of them, of these parts of the range.
 const NEAR: usize = 512;
-const BAND: f64 = 1.0 / 256.0;
+const WIDTHS: [f64; 2] = [1.0 / 256.0, 1.0 / 128.0];
 const BANDS: usize = 17;
 /// How many samples a stretch the outermost band holds, and how many times as many as any other.
 const PILED: f64 = 4.0;
@@ -118,23 +118,30 @@ const OVER: f64 = 6.0;
 
 /// Share of the samples that pile up at the highest or the lowest of their neighbourhood.
 pub(super) fn piled(samples: &[f64], range: f64) -> Option<f64> {
-    let share = |sign: f64| {
+    let share = |sign: f64, width: f64| {
         let mut bands = [0.0; BANDS];
+        let mut stretches = 0.0;
         for near in samples.chunks_exact(NEAR) {
             let most = near.iter().map(|x| sign * x).fold(f64::NEG_INFINITY, f64::max);
+            let least = near.iter().map(|x| sign * x).fold(f64::INFINITY, f64::min);
+            // A silent stretch lies near its highest sample.
+            if most - least < 0.25 * range {
+                continue;
+            }
+            stretches += 1.0;
             // What stands still is a gap, or a rail that does not drift.
-            let moving = near.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| pair[1]);
-            moving.map(|x| ((most - sign * x) / (BAND * range)) as usize).for_each(|band| {
+            let moves = |pair: &&[f64]| pair[0] != pair[1] && pair[1].is_finite();
+            let moving = near.windows(2).filter(moves).map(|pair| pair[1]);
+            moving.map(|x| ((most - sign * x) / (width * range)) as usize).for_each(|band| {
                 if let Some(count) = bands.get_mut(band) {
                     *count += 1.0;
                 }
             });
             bands[0] -= 1.0;
         }
-        let stretches = (samples.len() / NEAR) as f64;
         let next = bands[1..].iter().copied().fold(1.0, f64::max);
         (bands[0] > PILED * stretches && bands[0] > OVER * next).then_some(bands[0] / samples.len() as f64)
     };
-    let [above, below] = [share(1.0), share(-1.0)];
+    let [above, below] = [1.0, -1.0].map(|sign| WIDTHS.into_iter().find_map(|width| share(sign, width)));
     (above.is_some() || below.is_some()).then(|| above.unwrap_or(0.0) + below.unwrap_or(0.0))
 }
