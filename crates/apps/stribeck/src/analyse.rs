@@ -40,8 +40,8 @@ pub struct Options {
     #[command(flatten)]
     reading: Reading,
     /// A record of the same machine when it was sound, read with the same flags: its spectra and levels are
-    /// drawn behind. May be repeated, the first is drawn; seven or more, of several bearings where there are,
-    /// calibrate the verdict
+    /// drawn behind. May be repeated, the first is drawn; two or more, of several bearings where there are,
+    /// calibrate the verdict, and combs of theirs that are no family's are set aside
     #[arg(long, value_name = "FILE")]
     baseline: Vec<PathBuf>,
     /// Its speed of the shaft [1/min] where that was another one

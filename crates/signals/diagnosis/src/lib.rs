@@ -59,6 +59,7 @@ pub use conclusion::{Answer, Concluded, Conclusion, FOUND};
 pub use error::Error;
 pub use families::defect::Defect;
 pub use families::family::{Family, Reason};
+pub use families::power::Limit;
 pub use families::sidebands::sidebands_seen;
 pub use families::unexplained::Unexplained;
 pub use findings::{Interval, MeasuredFindings, SoundAsHigh};

@@ -17,7 +17,6 @@
 //! }
 //! ```
 
-use crate::families::power::Limit;
 use crate::record::zone::{Foundation, Group, Zone};
 use crate::record::{alarm, quality};
 use crate::{Answer, Defect, Reason};
@@ -163,7 +162,7 @@ contents! {
     Number: f64;
     Whole: u64, u32, i32, usize;
     Flag: bool;
-    Text: String, Answer, Defect, Limit, Reason, Group, Foundation, Zone, quality::Kind, alarm::Quantity, alarm::State;
+    Text: String, Answer, Defect, Reason, Group, Foundation, Zone, quality::Kind, alarm::Quantity, alarm::State;
 }
 
 impl<T: Part> Part for Option<T> {

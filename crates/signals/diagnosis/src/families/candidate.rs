@@ -202,8 +202,8 @@ impl Candidate {
 }
 
 /// Impacts slower than this [Hz] are short beside their period, and up to that frequency their lines are as high.
-const SLOW_HZ: f64 = 5.0;
-const LINES_TO_HZ: f64 = 100.0;
+pub(crate) const SLOW_HZ: f64 = 5.0;
+pub(crate) const LINES_TO_HZ: f64 = 100.0;
 
 /// Depth of the modulation at a comb. The power of slow impacts is a small part of the noise's, and in as many more
 /// lines: theirs are added, less the background.

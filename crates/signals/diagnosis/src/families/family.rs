@@ -45,6 +45,8 @@ quantities! {
         pub depth_band_hz: Option<(f64, f64)>,
         /// Band in which it stands highest [Hz].
         pub band_hz: Option<(f64, f64)>,
+        /// The weakest impacts at its frequency that the record would have shown; `null` where it could show none.
+        pub limit: Option<Limit>,
         /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
         /// lines ([`BandEnvelope::autocorrelation`]).
         pub in_passages: bool,
@@ -63,9 +65,6 @@ quantities! {
         /// Height of the family [dB], for comparison with others.
         #[serde(skip)]
         pub(crate) height_db: f64,
-        /// Impacts that the record would have shown.
-        #[serde(skip)]
-        pub(crate) limit: Option<Limit>,
         /// Peak of its impacts over the root mean square of the record, where it is there.
         #[serde(skip)]
         pub shown_over_rms: Option<f64>,

@@ -109,7 +109,9 @@ mod tests {
         let found = of(2.0 * (4.0_f64 / 3.0).sqrt(), &[-1.0, 0.0, 1.0]).unwrap();
         assert!((found.p_value - 0.5 * (1.0 - 2.0 / 6.0_f64.sqrt())).abs() < 1e-9, "{found:?}");
         assert!(found.as_high == 0 && !found.is_beyond());
-        assert!(!of(30.0, &[-1.0, 0.0, 1.0]).unwrap().is_beyond(), "three are too few");
+        // Of few the distance from the highest counts; a single one has no scatter.
+        assert!(of(4.2, &[-1.0, 0.0, 1.0]).unwrap().is_beyond(), "3.2 dB above the highest of three");
+        assert!(!of(4.0, &[-1.0, 0.0, 1.0]).unwrap().is_beyond() && !of(30.0, &[0.0]).unwrap().is_beyond());
         let seven = [-1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 0.5];
         assert!(of(30.0, &seven).unwrap().is_beyond() && !of(1.1, &seven).unwrap().is_beyond());
         assert_eq!(of(0.0, &seven).unwrap().as_high, 5);

@@ -34,6 +34,6 @@ fn planted_channels_together_name_the_nearest() {
     }
     let joint = named(&["a", "b"], [&deaf, &deaf]);
     assert!(joint.families.iter().all(|family| !family.claimed), "{joint:?}");
-    assert!(joint.verdict.contains("no defect"), "{}", joint.verdict);
+    assert!(joint.verdict.contains("No defect of a raceway whose"), "{}", joint.verdict);
     assert!(Joint::of(&[("a".to_owned(), &near)]).is_none());
 }

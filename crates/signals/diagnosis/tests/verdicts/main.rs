@@ -6,6 +6,7 @@ mod families;
 mod given;
 mod joint;
 mod lengths;
+mod power;
 mod records;
 mod signals;
 mod sound;

@@ -34,7 +34,7 @@ fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
     let findings = analysed(signal.clone(), 1200.0);
     assert!(claimed(&findings).is_empty(), "{findings:#?}");
     assert!(
-        findings.families[0].is_there() && findings.verdict.contains("BPFO can be seen"),
+        findings.families[0].is_there() && findings.verdict.starts_with("No defect of a raceway whose"),
         "{findings:#?}"
     );
     // Where this machine showed nothing of it when it was sound, it is a defect; with one sound record that
@@ -51,9 +51,14 @@ fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
     let one_as_high = beside(&[&sound_db[..], &[score_db]].concat());
     assert!(claimed(&one_as_high).is_empty(), "{one_as_high:#?}");
     assert_eq!(one_as_high.sound_as_high.map(|s| (s.as_high, s.records)), Some((1, 8)));
-    let too_few = beside(&sound_db[..3]);
+    // Two count by the distance from the higher, and may be those of a machine with a damaged element, too.
+    let two = beside(&sound_db[..2]);
+    assert_eq!(claimed(&two), ["BPFO"], "{two:#?}");
+    assert_eq!(two.families[0].not_told_apart_from, Some(Defect::Bsf), "{two:#?}");
+    assert!(claimed(&beside(&[0.1, score_db - 2.0])).is_empty());
+    let too_few = beside(&sound_db[..1]);
     assert!(claimed(&too_few).is_empty(), "{too_few:#?}");
-    noted(&too_few, "at least 7");
+    noted(&too_few, "at least 2");
 }
 
 #[test]
@@ -62,7 +67,7 @@ fn by_hand_a_short_record_says_how_long_it_should_be() {
     let cage = family(&findings, Defect::Ftf);
     // The cage turns 1.99 times a second: ten periods take 5.0 s.
     assert!(cage.reason.to_string().contains("holds 1.99 periods; 5.03 s"), "{}", cage.reason);
-    assert!(findings.verdict.contains("It does not decide about FTF"), "{}", findings.verdict);
+    assert_eq!(findings.conclusion.cage.answer, stribeck_diagnosis::Answer::CannotTell);
 }
 
 #[test]
