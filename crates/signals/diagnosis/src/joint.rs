@@ -216,7 +216,11 @@ fn conclude(families: &[JointFamily], channels: &[(String, &Analysis)]) -> Strin
     };
     let claimed: Vec<String> = families.iter().filter(|f| f.claimed).map(of).collect();
     if !claimed.is_empty() {
-        return format!("The {} channels together show {}.", channels.len(), claimed.join(" and "));
+        let who = match channels.len() {
+            1 => "The one channel shows".to_owned(),
+            count => format!("The {count} channels together show"),
+        };
+        return format!("{who} {}.", claimed.join(" and "));
     }
     let single = families.iter().any(|f| f.channels.iter().any(|evidence| evidence.claimed));
     if single {

@@ -18,10 +18,13 @@ pub struct Pool {
     sums: Vec<Sum>,
     /// The machine of the first record, at whose speed the lines are.
     machine: Option<Machine>,
-    /// Of the last record: density, course, levels and samples.
-    last: Option<((Vec<f64>, Vec<f64>), Course, Health, u64)>,
+    /// The last record that was added.
+    last: Option<LastRecord>,
     rate_hz: f64,
 }
+
+/// Density, course, levels and samples of a record.
+type LastRecord = ((Vec<f64>, Vec<f64>), Course, Health, u64);
 
 #[derive(Debug)]
 struct Sum {
