@@ -100,7 +100,7 @@ pub(super) fn mended(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -
         return match turns {
             Some(turns) if per_turn == pulses || per_turn == teeth => Ok(turns),
             Some(turns) if per_turn == 1 => Ok(Mended { wheel: Some(wheel), ..turns }),
-            _ if per_turn == teeth || per_turn % pulses == 0 && per_turn > pulses => whole,
+            _ if per_turn == teeth || per_turn.is_multiple_of(pulses) && per_turn > pulses => whole,
             _ => Err(format!(
                 "tachometer `{name}`: the distances of its pulses recur every {pulses}, with the room of {teeth}, and \
                  {per_turn} are said to make a turn: no speed follows. Give `--pulses-per-turn {pulses}`"
