@@ -52,9 +52,13 @@ mod tests {
     #[test]
     fn by_hand_an_arrow_that_runs_up_is_found() {
         let uses = |folder: &str, name: &str| {
-            (folder.to_owned(), format!("[package]\n\n[dependencies]\n{name}.workspace = true\n\n[features]\n"))
+            (
+                folder.to_owned(),
+                format!("[package]\n\n[dependencies]\n{name}.workspace = true\n\n[features]\n"),
+            )
         };
-        let crates = [uses("crates/fe/mesh", "stribeck-store"), uses("crates/bearing/store", "stribeck-mesh")];
+        let crates =
+            [uses("crates/fe/mesh", "stribeck-store"), uses("crates/bearing/store", "stribeck-mesh")];
         assert_eq!(complaints(&crates), ["crates/fe/mesh uses stribeck-store, which lies in a higher layer"]);
     }
 }

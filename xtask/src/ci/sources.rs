@@ -28,7 +28,8 @@ pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
     let mut found = Vec::new();
     let mut folders = vec!["crates".to_owned()];
     while let Some(folder) = folders.pop() {
-        let entries = std::fs::read_dir(root.join(&folder)).with_context(|| format!("cannot read {folder}"))?;
+        let entries =
+            std::fs::read_dir(root.join(&folder)).with_context(|| format!("cannot read {folder}"))?;
         for entry in entries.flatten().filter(|entry| entry.path().is_dir()) {
             let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
             let list = if entry.path().join("Cargo.toml").is_file() { &mut found } else { &mut folders };

@@ -90,7 +90,8 @@ mod tests {
         let release = folder.path().join("release");
         write(&release, "install.sh", &filled(TEMPLATES[0].1, &[(format!("{name}.tar.gz"), sum)]))
             .expect("written");
-        for (place, from) in [(folder.path(), None), (folder.path(), Some("release")), (&release, Some("."))] {
+        for (place, from) in [(folder.path(), None), (folder.path(), Some("release")), (&release, Some("."))]
+        {
             let mut install = Command::new("sh");
             install.arg(release.join("install.sh")).current_dir(place).env_remove("STRIBECK_FROM");
             install.env("STRIBECK_TO", "bin").envs(from.map(|from| ("STRIBECK_FROM", from)));
