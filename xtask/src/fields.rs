@@ -1,30 +1,17 @@
-//! `docs/guide/src/fields.md`: every field of a scene, from the table by which scenes are read; and the same
-//! as a schema for editors.
+//! `docs/guide/src/fields.md`: every field of a scene, from the table by which scenes are read.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use stribeck_scene::fields::{json_schema, page};
+use stribeck_scene::fields::page;
 
 use crate::workspace;
 
 /// The page.
 const PAGE: &str = "docs/guide/src/fields.md";
 
-/// Flags of `fields`.
-#[derive(Debug, clap::Args)]
-pub(crate) struct Options {
-    /// Prints the fields as a JSON schema instead
-    #[arg(long)]
-    schema: bool,
-}
-
-pub(crate) fn run(options: &Options) -> Result<ExitCode> {
-    if options.schema {
-        println!("{:#}", json_schema());
-        return Ok(ExitCode::SUCCESS);
-    }
+pub(crate) fn run() -> Result<ExitCode> {
     std::fs::write(workspace::root().join(PAGE), page()).with_context(|| format!("cannot write {PAGE}"))?;
     println!("{PAGE} says what the table of fields says");
     Ok(ExitCode::SUCCESS)
@@ -33,6 +20,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
 /// Whether the page agrees with the table.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(root.join(PAGE)).unwrap_or_default();
-    let complaint = || format!("{PAGE} is not what the table says; `cargo xtask fields` writes it anew");
+    let complaint =
+        || format!("{PAGE} is not what the table says; `cargo xtask write-fields` writes it anew");
     Ok((text != page()).then(complaint).into_iter().collect())
 }

@@ -18,7 +18,7 @@ use std::ffi::{OsStr, OsString};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stribeck::{Limits, Loudness, Place};
+use stribeck::{Loudness, Place};
 
 /// Stribeck: explicit dynamics of rolling element bearings. The commands of `stribeck`, and those that
 /// develop it.
@@ -29,8 +29,6 @@ struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
-    #[command(flatten)]
-    limits: Limits,
 }
 
 #[derive(Debug, Subcommand)]
@@ -43,13 +41,13 @@ enum Command {
     /// Builds the module of `cargo xtask lab`, which steps a bearing in a page, and says where it is
     LabModule(lab::Options),
     /// Builds the documents as a book with mdBook, with a lab in its guide
-    Book,
+    WriteBook,
     /// Builds the wheel of the Python module, which needs no Rust where it is installed
     Wheel(wheel::Options),
     /// Makes the files of a release: programs, wheels, installers, checksums, licences
     Release(release::Options),
     /// Writes the guide's page of all fields of a scene from their types
-    Fields(fields::Options),
+    WriteFields,
     /// Writes the guide's page of all numbers of a run from the summary's declarations
     Quantities(quantities::Options),
     /// Checks format, lints, tests and documents
@@ -69,7 +67,6 @@ fn main() -> ExitCode {
     }
     let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
-    cli.limits.apply();
     stribeck::conclude(match cli.command {
         Command::Program(command) if command.needs_full() => handed_on::program(&words, cli.loudness),
         Command::Program(command) => lab::with_module(command)
@@ -78,9 +75,9 @@ fn main() -> ExitCode {
         Command::Study(words) => handed_on::study(&words, cli.loudness),
         Command::LabModule(options) => lab::build_module(&options),
         Command::Wheel(options) => wheel::build(&options),
-        Command::Book => book::run(),
+        Command::WriteBook => book::run(),
         Command::Release(options) => release::run(&options),
-        Command::Fields(options) => fields::run(&options),
+        Command::WriteFields => fields::run(),
         Command::Quantities(options) => quantities::run(&options),
         Command::Ci(options) => ci::run(&options),
     })

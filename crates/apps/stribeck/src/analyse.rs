@@ -101,6 +101,7 @@ fn component(text: &str) -> Result<Component, String> {
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    options.reading.limits.apply();
     let files = series::files(&options.files, place)?;
     if let Some(count) = options.reference {
         ensure!(

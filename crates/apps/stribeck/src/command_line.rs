@@ -43,7 +43,7 @@ pub fn parse<C: Parser>() -> C {
 }
 
 /// Words of other programs, and ours: what clap's aliases and nearest names do not reach.
-const OURS: [(&[&str], &str); 12] = [
+const OURS: [(&[&str], &str); 15] = [
     (&["resume", "continue"], "stribeck simulate --resume RUN"),
     (&["version"], "stribeck --version"),
     (&["--dry-run", "check"], "stribeck plan SCENE.ron"),
@@ -55,6 +55,12 @@ const OURS: [(&[&str], &str); 12] = [
     (&["--load", "--load-kn", "--load-n"], "--set operation.load_n=…, or --load-n, in N"),
     (&["--length", "--length-mm"], "--set defect.length_mm=…, or --length-mm, in mm"),
     (&["--bearing"], "--set bearing=NAME"),
+    (&["--search", "--find"], "stribeck bearings 62, with the beginning of names; without one, all"),
+    (&["--list-channels", "--channels"], "--channel ?, which lists them"),
+    (
+        &["mv", "rename", "copy", "cp"],
+        "stribeck simulate SCENE.ron --name NAME, or move the folder runs/NAME",
+    ),
     (&["--fs", "--rate", "--sample-rate"], "--rate-hz HZ"),
     (&["--force", "-f"], "--overwrite of simulate, --yes of rm"),
     (&["csv", "--csv", "wav", "--wav", "mat", "--mat", "npz", "--npz"], "stribeck export RUN --to FORMAT"),

@@ -32,6 +32,7 @@ pub struct Options {
 const MARK: &str = "compare.json";
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    options.reading.limits.apply();
     let out = options.out.clone().unwrap_or_else(|| default_folder(&labels(&options.sides)));
     let comparison = write(&options.sides, &options.reading, &out, place)?;
     print(&comparison);

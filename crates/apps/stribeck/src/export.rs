@@ -29,8 +29,8 @@ const TIME: &str = "time_s";
 /// Flags of `export`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Folder of the run, or its name below runs/ [default: the newest run; of an ensemble name a start]; with
-    /// `--to radioss` also a scene file
+    /// Folder of the run, or its name below runs/ [default: the newest run; of an ensemble name a start]; the
+    /// file of a record, to be converted; with `--to radioss` also a scene file
     run: Option<PathBuf>,
     /// Format
     #[arg(long)]
@@ -57,7 +57,7 @@ pub struct Options {
     #[arg(long, value_name = "FIELD=VALUE")]
     set: Vec<String>,
     /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, sound.wav, paraview,
-    /// mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad]
+    /// mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad, of a record NAME.FORMAT]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -129,6 +129,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         options.set.is_empty(),
         "`--set` changes a scene before it is written: use it with a scene file and `--to radioss`"
     );
+    if let Some(file) = options.run.as_ref().map(|run| place.locate_run(run)).filter(|run| run.is_file()) {
+        place.refuse_scene(&file)?;
+        return convert(&file, options);
+    }
     let folder = match &options.run {
         Some(run) => existing(run, place)?,
         None => place.newest_single_run()?,
@@ -163,6 +167,65 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     };
     say!("{}", shown(&written));
     Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the channels of a record in another format.
+fn convert(file: &Path, options: &Options) -> Result<ExitCode> {
+    let of_runs = options.sensor.is_some() || options.path.is_some() || options.machine.is_some();
+    ensure!(
+        options.to.holds_signals(false) && !of_runs,
+        "`{}` is a record: it is converted to csv, npz, mat, uff, parquet or wav64, without `--sensor`, `--path` \
+         or `--machine`",
+        shown(file)
+    );
+    let recording = Recording::open(file)?;
+    let mut channels = chosen(&recording, options)?;
+    // A table has rows; numbers that stand alone have a place in the others.
+    if !matches!(options.to, Format::Npz | Format::Mat) {
+        let longest = channels.iter().map(|c| c.len).max().unwrap_or_default();
+        let (whole, others): (Vec<_>, Vec<_>) = channels.into_iter().partition(|c| c.len == longest);
+        others.iter().for_each(|c| caution!("`{}` has {} samples of {longest}: left out", c.name, c.len));
+        channels = whole;
+    }
+    let ending = options.to.endings().first().unwrap_or(&"");
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let default = || PathBuf::from(format!("{stem}.{ending}"));
+    let out = options.out.clone().unwrap_or_else(default);
+    may_be_written(&out, options.to)?;
+    ensure!(out.canonicalize().ok() != file.canonicalize().ok(), "`{}` is the record itself", shown(&out));
+    let mut notes = vec![format!("from {}, {}", shown(file), recording.format)];
+    notes.extend(recording.notes);
+    write_channels(&out, &channels, notes, options)?;
+    say!("{}", shown(&out));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The channels that were asked for, and the times of samples.
+fn chosen(recording: &Recording, options: &Options) -> Result<Vec<Channel>> {
+    let asked = |c: &Channel| {
+        options.channels.is_empty() || options.channels.iter().any(|part| c.name.contains(part))
+    };
+    if !recording.channels.iter().any(asked) {
+        bail!("no channel contains `{}`; there are {}", options.channels.join("` or `"), recording.names());
+    }
+    Ok(recording.channels.iter().filter(|c| c.is_time || c.name == TIME || asked(c)).cloned().collect())
+}
+
+/// Writes channels in a format that holds signals.
+fn write_channels(path: &Path, channels: &[Channel], notes: Vec<String>, options: &Options) -> Result<()> {
+    // A wave has no place for the time.
+    let no_time = || channels.iter().filter(|c| c.name != TIME && !c.is_time).cloned().collect::<Vec<_>>();
+    match options.to {
+        Format::Csv => csv::write(path, channels, &notes)?,
+        Format::Npz => npz::write(path, channels, &notes)?,
+        Format::Mat => mat5::write(path, channels, &notes)?,
+        Format::Uff => uff58::write(path, &no_time(), &notes)?,
+        Format::Parquet => parquet::write(path, channels, &notes)?,
+        Format::Wav => sound::recorded(path, &no_time(), options.sensor.as_deref(), notes)?,
+        Format::Wav64 => wav::write(path, &no_time(), &notes)?,
+        Format::Pvd | Format::Inp | Format::Msh | Format::Radioss => {}
+    }
+    Ok(())
 }
 
 /// Refuses to write over a file of another kind, or into a run, and makes the folder of a new file.
@@ -215,19 +278,11 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         recording.channels = crate::machine::channels(run, machine.as_deref(), place)?;
     }
     // Whatever is chosen keeps its times: a run's first sample is not at zero.
-    let chosen = |c: &Channel| {
-        options.channels.is_empty() || options.channels.iter().any(|part| c.name.contains(part))
+    let in_unit = |c: Channel| {
+        let unit = unit(&c.name).map(str::to_owned);
+        c.in_unit(unit)
     };
-    if !recording.channels.iter().any(chosen) {
-        bail!("no channel contains `{}`; the run has {}", options.channels.join("` or `"), recording.names());
-    }
-    let wanted = |c: &&Channel| c.name == TIME || chosen(c);
-    let channels: Vec<Channel> = recording
-        .channels
-        .iter()
-        .filter(wanted)
-        .map(|c| c.clone().in_unit(unit(&c.name).map(str::to_owned)))
-        .collect();
+    let channels: Vec<Channel> = chosen(&recording, options)?.into_iter().map(in_unit).collect();
     let channels = match &options.sensor {
         Some(text) => recorded(&channels, text)?,
         None => channels,
@@ -236,19 +291,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         .out
         .clone()
         .unwrap_or_else(|| dir.path().join(format!("trace.{}", options.to.endings().first().unwrap_or(&""))));
-    let notes = provenance(run);
-    // A wave has no place for the time.
-    let no_time: Vec<Channel> = channels.iter().filter(|c| c.name != TIME).cloned().collect();
-    match options.to {
-        Format::Csv => csv::write(&path, &channels, &notes)?,
-        Format::Npz => npz::write(&path, &channels, &notes)?,
-        Format::Mat => mat5::write(&path, &channels, &notes)?,
-        Format::Uff => uff58::write(&path, &no_time, &notes)?,
-        Format::Parquet => parquet::write(&path, &channels, &notes)?,
-        Format::Wav => sound::recorded(&path, &no_time, options.sensor.as_deref(), notes)?,
-        Format::Wav64 => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd | Format::Inp | Format::Msh | Format::Radioss => {}
-    }
+    write_channels(&path, &channels, provenance(run), options)?;
     Ok(path)
 }
 
@@ -332,13 +375,16 @@ struct Stressed {
 fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
     let frames = frames::read_all(&dir.frames())?;
     if frames.is_empty() {
-        let wanted = match run.scene.written.model {
-            ModelScene::Full => "`output: (frames: ())`",
-            ModelScene::Reduced(_) => {
-                "`model: full` and `output: (frames: ())`, as the reduced model makes none,"
-            }
+        let (model, why) = match run.scene.written.model {
+            ModelScene::Full => ("", ""),
+            ModelScene::Reduced(_) => (" --set model=full", "; the reduced model makes none"),
         };
-        bail!("`{}` holds no frames; give its scene {wanted} and run it again", dir.path().display());
+        bail!(
+            "`{0}` holds no frames{why}. This makes them: stribeck simulate {0}/scene.ron{model} --set \
+             'output.frames=()' --name {1}-frames",
+            shown(dir.path()),
+            run.scene.written.name
+        );
     }
     let whole = RunMesh::read(dir.mesh())?;
     let lame = Lame::of(&run.scene.material);

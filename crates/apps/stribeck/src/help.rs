@@ -12,7 +12,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("For other programs", &["export", "fmu", "stiffness"]),
     (
         "Runs, names, checks",
-        &["list", "open", "report", "rm", "bearings", "validate", "completions", "man", "help"],
+        &["list", "open", "report", "rm", "bearings", "fields", "validate", "completions", "man", "help"],
     ),
 ];
 

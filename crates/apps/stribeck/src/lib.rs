@@ -22,15 +22,18 @@ mod compare;
 mod demo;
 #[cfg(feature = "full")]
 mod detect;
+mod disk;
 #[cfg(not(feature = "full"))]
 mod elsewhere;
 #[cfg(feature = "full")]
 mod emit;
 #[cfg(feature = "full")]
 mod export;
+mod fields;
 pub mod fmu;
 mod help;
 pub mod lab;
+#[cfg(feature = "full")]
 mod limits;
 mod list;
 mod machine;
@@ -65,7 +68,6 @@ use elsewhere::{
     self as analyse, self as compare, self as demo, self as detect, self as export, self as machine_fit,
     self as sweep,
 };
-pub use limits::Limits;
 pub use out::Loudness;
 pub use place::Place;
 
@@ -86,15 +88,14 @@ pub struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
-    #[command(flatten)]
-    limits: Limits,
 }
 
 impl Cli {
     /// Executes the command line.
     pub fn run(&self) -> Result<ExitCode> {
         self.loudness.apply();
-        self.limits.apply();
+        #[cfg(feature = "full")]
+        limits::Limits::default().apply();
         interrupt::outlive_full_files();
         self.command.run(&match std::env::var_os(place::REPOSITORY) {
             Some(root) => Place::repository("cargo xtask", root.into()),
@@ -152,6 +153,9 @@ pub enum Command {
     /// Lists bearings by name: dimensions, defect frequencies, sources
     #[command(alias = "bearing", after_help = "Example: stribeck bearings \"NU 205\"")]
     Bearings(bearings::Options),
+    /// Lists the fields of a scene: defaults, ranges, units
+    #[command(after_help = "Example: stribeck fields operation")]
+    Fields(fields::Options),
     /// Analyses measured records: which defects, how certain, and what is open
     #[command(
         visible_alias = "analyze",
@@ -161,7 +165,7 @@ pub enum Command {
     /// Compares runs, ensembles and records: changed fields, changed results
     #[command(alias = "diff", after_help = "Example: stribeck compare mine other record.mat")]
     Compare(compare::Options),
-    /// Writes the signals or the stress frames of a run in a format of other programs
+    /// Writes the signals of a run or record, or a run's frames, for other programs
     #[command(after_help = "Example: stribeck export mine --to wav --slow 10")]
     Export(export::Options),
     /// Lists the runs and other results
@@ -211,6 +215,7 @@ impl Command {
             Self::Lab(options) => lab::run(options, place),
             Self::Fmu(options) => fmu::run(options, place),
             Self::Bearings(options) => bearings::run(options),
+            Self::Fields(options) => fields::run(options),
             Self::Analyse(options) => analyse::run(options, place),
             Self::Compare(options) => compare::run(options, place),
             Self::Export(options) => export::run(options, place),

@@ -1,18 +1,17 @@
 //! Limits on what a command takes of the machine's memory.
 
-/// Flags of all commands.
+/// Flags of commands that read records.
 #[derive(Debug, Clone, Default, clap::Args)]
-pub struct Limits {
+pub(crate) struct Limits {
     /// Memory that the samples of a record may take, such as 500MB or 8GB: a small file may unpack to more than
     /// the machine has [default: a quarter of the machine's]
-    #[arg(long, global = true, value_name = "SIZE", value_parser = bytes, display_order = 1002)]
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
     max_memory: Option<u64>,
 }
 
 impl Limits {
     /// Holds from now on.
-    pub fn apply(&self) {
-        #[cfg(feature = "full")]
+    pub(crate) fn apply(&self) {
         if let Some(most) = self.max_memory.or_else(|| crate::memory::whole_bytes().map(|all| all / PART)) {
             stribeck_dsp::channel::memory::set_most_bytes(most);
         }
@@ -20,7 +19,6 @@ impl Limits {
 }
 
 /// Part of the machine's memory that the samples of a record may take.
-#[cfg(feature = "full")]
 const PART: u64 = 4;
 
 /// A number of bytes, with a unit or without.

@@ -13,9 +13,9 @@ use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::ModelScene;
 use stribeck_simulation::bearing::assembly::Assembly;
-use stribeck_simulation::run::channels;
 use stribeck_store::run_info::clock;
 
+use crate::disk;
 use crate::out::say;
 use crate::place::Place;
 use trial::Trial;
@@ -51,6 +51,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let mesh =
         MeshFacts { counts: assembly.mesh_info(), element_time_step_s: assembly.element_time_step_s(&scene) };
     let mut plan = Plan::of(&scene, &mesh)?;
+    plan.dangers.extend(disk::too_small(&scene, &place.runs()));
     if options.json {
         let trial = if options.no_trial { None } else { Some(trial::begin(&scene, &plan, place)?) };
         plan.advice.extend(trial.as_ref().and_then(|trial| long(&scene, trial)));
@@ -221,8 +222,7 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
 
 /// Length and resolution of the record.
 fn record(scene: &ResolvedScene, plan: &Plan) {
-    let samples = 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us;
-    say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(scene).len() as f64);
+    say!("  the trace takes {:.3} GB", 1e-9 * disk::trace_bytes(scene));
     if let Some(elements) = plan.elements_per_wavelength {
         say!(
             "  the mesh has {elements:.0} elements a wavelength of surface (Rayleigh) waves at half the sampling rate"

@@ -14,6 +14,7 @@ use stribeck_store::Error;
 use stribeck_store::run_dir::RunDir;
 use stribeck_store::run_info::{RunInfo, Status, clock};
 
+use crate::disk;
 use crate::host;
 use crate::interrupt::{self, Interrupt};
 use crate::out::{alert, caution, say, tell};
@@ -29,6 +30,9 @@ pub struct Options {
     /// already]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Name of the run, and of its folder below runs/ [default: that of the scene]
+    #[arg(long, conflicts_with_all = ["out", "resume"])]
+    name: Option<String>,
     /// Replaces the run in the folder, once the new one is complete; until then that lies in DIR.new
     #[arg(long)]
     overwrite: bool,
@@ -55,6 +59,15 @@ pub struct Options {
     /// Seed of the starts: equal seeds draw the same [default: 1]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
+}
+
+impl Options {
+    /// The scene of a new run.
+    fn scene(&self, place: &Place) -> Result<Scene> {
+        let name = self.name.iter().map(|name| format!("name={name:?}"));
+        let set: Vec<String> = self.set.iter().cloned().chain(name).collect();
+        place.scene(self.scene.as_deref(), &set)
+    }
 }
 
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
@@ -109,7 +122,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let (scene, dir) = match &options.resume {
         Some(run) => reopen(&place.locate_run(run), &options.set)?,
         None => {
-            let scene = place.scene(options.scene.as_deref(), &options.set)?;
+            let scene = options.scene(place)?;
             let dir = reserve(options, place, &scene)?;
             (scene, dir)
         }
@@ -119,6 +132,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             "`solver.time_step_factor` is {}: steps longer than the critical one diverge",
             scene.solver.time_step_factor
         );
+    }
+    if let Some(warning) = disk::too_small(&scene.resolve(), dir.path()) {
+        caution!("{warning}");
     }
     interrupt.need_not_wait_for(dir.reservation());
     let path = shown(dir.path());

@@ -13,12 +13,16 @@ use stribeck_theory::ring_stiffness::TurningRings;
 use stribeck_theory::static_load::{RigidRings, StaticLoad};
 use stribeck_theory::{Error, contact_law::ContactLawKind, load_rating};
 
+use crate::deviation::RollingSurface;
 use crate::duty::LONGEST_RUN_S;
 use crate::resolved::ResolvedScene;
 use crate::scene::{
     BearingScene, ContactFormula, DefectRing, DefectScene, ElementKind, MaterialScene, ModelScene,
     RollerProfile, Scene,
 };
+
+/// Half the sampling rate over the rate of the knocks, below which an envelope has no band for them [-].
+const KNOCKS: f64 = 10.0;
 
 impl From<&BearingScene> for Dimensions {
     fn from(bearing: &BearingScene) -> Self {
@@ -153,6 +157,80 @@ impl ResolvedScene {
                 "the load of {load_n:.0} N exceeds the static rating of this bearing, {rating_n:.0} N by ISO 76 \
                  (s₀ = {safety:.2}): steel would yield, which the model does not. Take less `operation.load_n`, \
                  or check `bearing.thickness_mm`, the length of the rollers"
+            )
+        })
+    }
+
+    /// What a run of this scene will not show, each with its reason and remedy: an overload, a spall outside the
+    /// load zone or as long as elements stand apart, and samples too far apart.
+    pub fn doubts(&self) -> Vec<String> {
+        let spalls = self.written.spalls();
+        let of_spalls = spalls.iter().flat_map(|spall| [self.idle_spall(spall), self.long_spall(spall)]);
+        self.overload().into_iter().chain(of_spalls.flatten()).chain(self.slow_samples()).collect()
+    }
+
+    /// A spall that no loaded element reaches, of an outer ring and under a load that do not turn.
+    fn idle_spall(&self, spall: &DefectScene) -> Option<String> {
+        let operation = &self.written.operation;
+        let turns = operation.outer_speed_rpm != 0.0
+            || operation.outer_speed_profile.is_some()
+            || operation.rotating_load.is_some();
+        if spall.ring != DefectRing::Outer || turns {
+            return None;
+        }
+        // Of an angle from the middle of the load zone, and how far from it elements carry: one beside them may
+        // stand up to a spacing farther when it is its turn.
+        let off_deg = |angle_deg: f64| ((angle_deg + 180.0).rem_euclid(360.0) - 180.0).abs();
+        let shared = self.static_load().ok()?;
+        let angles = self.written.angles_to_load_deg();
+        let loaded = angles.iter().zip(&shared.roller_n).filter(|(_, force)| **force > 0.0);
+        let reach_deg =
+            loaded.map(|(angle, _)| off_deg(angle - 90.0)).fold(0.0, f64::max) + 360.0 / self.rollers as f64;
+        let half_deg = (0.5e-3 * spall.length_mm / self.outer_race_radius).to_degrees();
+        let zone_deg = self.written.load_zone_deg();
+        (off_deg(spall.angle_deg - zone_deg) - half_deg > reach_deg).then(|| {
+            format!(
+                "the spall at {}° lies outside of the load zone, {reach_deg:.0}° to either side of {zone_deg:.0}°: \
+                 no element carries anything over it. Take `defect.angle_deg` within the zone",
+                spall.angle_deg
+            )
+        })
+    }
+
+    /// A spall in which several elements are at once.
+    fn long_spall(&self, spall: &DefectScene) -> Option<String> {
+        let radius = match spall.ring {
+            DefectRing::Outer => self.outer_race_radius,
+            DefectRing::Inner => self.inner_race_radius,
+        };
+        let spacing_mm = 2e3 * PI * radius / self.rollers as f64;
+        (spall.length_mm > spacing_mm).then(|| {
+            format!(
+                "the spall is {} mm long, and elements stand {spacing_mm:.1} mm apart on its raceway: several are in \
+                 it at once, and one's exit is not told from another's entry. Take less `defect.length_mm`",
+                spall.length_mm
+            )
+        })
+    }
+
+    /// Samples that hold no knock at the rate of the defects.
+    fn slow_samples(&self) -> Option<String> {
+        let k = self.written.mean_kinematics();
+        let hz = |on: RollingSurface| match on {
+            RollingSurface::Outer => k.bpfo_hz.abs(),
+            RollingSurface::Inner => k.bpfi_hz.abs(),
+            RollingSurface::Roller(_) => 2.0 * k.bsf_hz.abs(),
+        };
+        let faults = self.written.faults();
+        let knocks_hz = faults.into_iter().map(hz).fold(0.0, f64::max);
+        let half_hz = 0.5 / self.interval;
+        (half_hz < KNOCKS * knocks_hz).then(|| {
+            format!(
+                "{:.0} samples a second (`output.interval_us`) hold nothing above {half_hz:.0} Hz, and the defect is \
+                 passed {knocks_hz:.0} times a second: what its knocks ring with lies above, and the record cannot \
+                 be judged. Take {:.0} or less",
+                1.0 / self.interval,
+                (0.5e6 / (KNOCKS * knocks_hz)).floor()
             )
         })
     }

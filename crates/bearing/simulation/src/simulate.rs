@@ -110,7 +110,7 @@ impl Task for Begin<'_> {
         with.enter("mesh", watch);
         let (model, setup) = M::prepare(&mut with, watch)?;
         let mut info = setup.info(scene, host);
-        scene.overload().into_iter().for_each(|words| info.warn(Topic::Contact.warning(words)));
+        scene.doubts().into_iter().for_each(|words| info.warn(Topic::Contact.warning(words)));
         let undamped = advice::undamped_housing(&scene.written);
         undamped.into_iter().for_each(|words| info.warn(Topic::TimeStep.warning(words)));
         model.warnings(scene, &info).into_iter().for_each(|warning| info.warn(warning));

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! runs/x/  scene.ron  run.json  trace.npy  energy.npy  mesh.vtu  checkpoint  frames/   written by the run
-//!          report.html  lab.html  summary.json  figures/                               written by the report
+//!          report.html  report.pdf  lab.html  summary.json  figures/                   written by the report
 //!          machine.npy                                  what the sensor of a scene's machine records of it
 //!          .lock                                                                       held while the run writes
 //! ```
@@ -53,6 +53,7 @@ const MESH: &str = "mesh.vtu";
 const CHECKPOINT: &str = "checkpoint";
 const REPORT: &str = "report.html";
 const SUMMARY: &str = "summary.json";
+const PDF: &str = "report.pdf";
 /// The page in which the bearing of a run runs (`stribeck report --lab`).
 pub const LAB: &str = "lab.html";
 const FIGURES: &str = "figures";
@@ -64,8 +65,11 @@ const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no
 /// run, so it is removed first, and a half removed run is not taken for a result.
-const FILES: [&str; 12] =
-    [INFO, ENSEMBLE, REPORT, LAB, SUMMARY, TRACE, SIGNALS, MACHINE, ENERGY, MESH, CHECKPOINT, SCENE];
+const FILES: [&str; 13] =
+    [INFO, ENSEMBLE, REPORT, PDF, LAB, SUMMARY, TRACE, SIGNALS, MACHINE, ENERGY, MESH, CHECKPOINT, SCENE];
+
+/// What is made from the samples of a run: it goes when the run goes on, so that none is older than its run.
+const DERIVED: [&str; 6] = [REPORT, PDF, LAB, SUMMARY, SIGNALS, MACHINE];
 
 /// Folders that a run or its report fills, and their files; GIFs stand in runs of earlier versions, which are removed, too.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];
@@ -199,12 +203,14 @@ impl RunDir {
         self.replaces.as_deref().map_or(Ok(()), |old| replacement::mark(&self.path, old))
     }
 
-    /// Writes `scene.ron` and `run.json` of a continued run, whose duration may be longer than before.
+    /// Writes `scene.ron` and `run.json` of a continued run, whose duration may be longer than before. What was
+    /// made from its samples until then is removed.
     ///
     /// Call it when the state of the checkpoint is restored and the time loop is about to begin.
     pub fn go_on(&self, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
         self.reservation.start();
         files::remove_partial(&self.path)?;
+        files::remove_derived(&self.path)?;
         // The scene first: with it and the checkpoint alone a run can be continued.
         let text = scene.to_ron();
         if std::fs::read(self.scene()).ok().as_deref() != Some(text.as_bytes()) {

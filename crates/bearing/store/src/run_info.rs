@@ -198,9 +198,17 @@ impl EnergyInfo {
 
     /// Largest energy imbalance in words, as of [`imbalance`].
     pub fn in_words(&self) -> String {
-        imbalance(self.max_relative_error, self.share_of_heat())
+        let words = imbalance(self.max_relative_error, self.share_of_heat());
+        if self.share_of_heat().is_some() || self.max_relative_error < LITTLE {
+            return words;
+        }
+        format!("{words}, which is {:.1e} J: contacts that carry little store little", self.peak_strain_j)
     }
 }
+
+/// An imbalance that is this share of the strain energy is told with that energy [-]: a light load stores none
+/// worth a share.
+const LITTLE: f64 = 0.05;
 
 /// An energy imbalance in words: relative to the peak strain energy or, where this is more, to the heat, with which
 /// the error of the steps grows.

@@ -22,6 +22,10 @@ const STRAIN_STEP: f64 = 0.01;
 /// Strain energy below this share of its peak makes no hourglass share: noise over noise.
 const STRAINED: f64 = 0.01;
 
+/// Nor does strain energy below this share of the kinetic energy: that of a first touch, where the peak is no more
+/// than itself.
+const TOUCHED: f64 = 1e-6;
+
 /// When to warn and when to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
@@ -247,7 +251,8 @@ impl System {
 
     fn look_at_hourglass(&self, seen: &mut Seen) -> Option<Finding> {
         let (ledger, limit) = (self.last_ledger(), self.limits.hourglass_warning_percent);
-        if ledger.strain.is_nan() || ledger.strain <= STRAINED * self.balance().peak_strain {
+        let least = (STRAINED * self.balance().peak_strain).max(TOUCHED * ledger.kinetic);
+        if ledger.strain.is_nan() || ledger.strain <= least {
             return None;
         }
         let share = ledger.hourglass / ledger.strain;

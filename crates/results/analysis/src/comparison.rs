@@ -28,10 +28,39 @@ pub struct Comparison {
     pub fields: Vec<FieldDifference>,
     /// The main numbers.
     pub rows: Vec<Row>,
+    /// The strongest line that facets make in each side, where it has one.
+    #[serde(skip_serializing_if = "no_lines")]
+    pub mesh_lines: Vec<Option<MeshLine>>,
     /// All other numbers of the runs' summaries in which they differ, by their path.
     pub numbers: Vec<Row>,
     /// Cautions.
     pub notes: Vec<String>,
+}
+
+/// A line that facets make.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MeshLine {
+    /// Its frequency [Hz].
+    pub hz: f64,
+    /// Its peak amplitude [g].
+    pub level_g: f64,
+}
+
+fn no_lines(lines: &[Option<MeshLine>]) -> bool {
+    lines.iter().all(Option::is_none)
+}
+
+impl MeshLine {
+    /// The strongest fundamental at any sensor of the first start.
+    fn of(side: &Side) -> Option<Self> {
+        let tones = side.members.first()?.summary.get("tones")?.as_array()?;
+        let number =
+            |tone: &serde_json::Value, name: &str| tone.get(name).and_then(serde_json::Value::as_f64);
+        let lines = tones.iter().filter(|tone| number(tone, "harmonic") == Some(1.0)).filter_map(|tone| {
+            Some(Self { hz: number(tone, "measured_hz")?, level_g: number(tone, "level_g")? })
+        });
+        lines.max_by(|a, b| a.level_g.total_cmp(&b.level_g))
+    }
 }
 
 /// One number of every side.
@@ -100,7 +129,13 @@ impl Comparison {
         let rows = of_signal.chain(of_run).collect();
         let numbers = numbers(&sides)?;
         let notes = notes(&sides, one_unit);
-        Ok(Self { sides, fields, rows, numbers, notes })
+        let mesh_lines = sides.iter().map(MeshLine::of).collect();
+        Ok(Self { sides, fields, rows, mesh_lines, numbers, notes })
+    }
+
+    /// Whether the scenes differ in the surfaces of contact, so that lines of the mesh come or go.
+    pub fn is_of_surfaces(&self) -> bool {
+        self.fields.iter().any(|field| field.field == "contact.surface" || field.field.ends_with("_facets"))
     }
 
     /// Band whose envelope is compared [Hz]: that in which the first side with a claim has its highest

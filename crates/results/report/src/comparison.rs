@@ -7,7 +7,7 @@ use std::path::Path;
 use maud::{Markup, PreEscaped, html};
 use stribeck_analysis::comparison::{Comparison, Contrast, FieldDifference, Kind, Row, Side, Verdict};
 use stribeck_analysis::statistic::Statistic;
-use stribeck_diagnosis::words::numbers::significant;
+use stribeck_diagnosis::words::numbers::{gravities, significant};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
@@ -37,7 +37,11 @@ fn page(comparison: &Comparison) -> Result<Markup, Error> {
     let sides = &comparison.sides;
     let title = title(sides);
     let Figures { trace, spectra, envelope, forces } = Figures::of(comparison);
-    let first = first_screen(comparison, envelope.first().or(spectra.first()).or(trace.first()))?;
+    let picture = match comparison.is_of_surfaces() {
+        true => spectra.first().or(envelope.first()),
+        false => envelope.first().or(spectra.first()),
+    };
+    let first = first_screen(comparison, picture.or(trace.first()))?;
     let drawn = |figures: Vec<Figure>| figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>();
     let sections = [
         ("signals", "Signals", drawn(trace)?),
@@ -173,10 +177,23 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
     } else {
         "Each is a single signal, so change and scatter are not distinguished.".to_owned()
     };
-    [follows, changed, caution, sides.iter().map(verdict).collect::<Vec<_>>().join(" ")]
+    [mesh(comparison), follows, changed, caution, sides.iter().map(verdict).collect::<Vec<_>>().join(" ")]
         .into_iter()
         .filter(|line| !line.is_empty())
         .collect()
+}
+
+/// The line of the mesh in each side, where surfaces of contact differ and one has it.
+fn mesh(comparison: &Comparison) -> String {
+    let lines = &comparison.mesh_lines;
+    if !comparison.is_of_surfaces() || lines.iter().all(Option::is_none) {
+        return String::new();
+    }
+    let each = comparison.sides.iter().zip(lines).map(|(side, line)| match line {
+        Some(line) => format!("{} has it at {:.0} Hz, {}", side.label, line.hz, gravities(line.level_g)),
+        None => format!("{} has none", side.label),
+    });
+    format!("Line of the mesh: {}.", each.collect::<Vec<_>>().join("; "))
 }
 
 fn field_in_words(difference: &FieldDifference) -> String {

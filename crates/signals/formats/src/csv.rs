@@ -549,7 +549,7 @@ impl Census {
 }
 
 /// Writes channels of one length as columns, after a comment line for each of `notes` and a time column when
-/// the first channel has a rate. Numbers have all their digits.
+/// the first channel has a rate. Numbers have all their digits; times fifteen, which leave no rounding in them.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] for channels of different lengths, [`Error::Io`].
@@ -568,9 +568,12 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     let names: Vec<String> =
         time.into_iter().chain(channels.iter().map(|c| c.name.replace(',', ";"))).collect();
     text += &(names.join(",") + "\n");
+    let is_time: Vec<bool> = channels.iter().map(|c| c.is_time || c.name.starts_with("time")).collect();
+    let value = |x: f64, is_time| if is_time { in_fifteen_digits(x) } else { format!("{x:?}") };
     for row in 0..rows as usize {
-        let time = rate.map(|hz| format!("{:?}", row as f64 / hz));
-        let values = time.into_iter().chain(columns.iter().map(|c| format!("{:?}", c[row])));
+        let time = rate.map(|hz| in_fifteen_digits(row as f64 / hz));
+        let columns = columns.iter().zip(&is_time).map(|(c, is_time)| value(c[row], *is_time));
+        let values = time.into_iter().chain(columns);
         text += &values.collect::<Vec<_>>().join(",");
         text.push('\n');
         if text.len() > 1 << 16 {
@@ -580,6 +583,11 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     }
     file.write_all(text.as_bytes()).map_err(io)?;
     file.flush().map_err(io)
+}
+
+/// `1e-5` where a product of steps is 9.999999999999999e-6.
+fn in_fifteen_digits(x: f64) -> String {
+    format!("{x:.14e}").parse::<f64>().map_or_else(|_| format!("{x:?}"), |x| format!("{x:?}"))
 }
 
 impl Column {

@@ -15,12 +15,15 @@ use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::RunDir;
 
 use super::{clocks, gaps, turning};
+use crate::limits::Limits;
 use crate::out::tell;
 use crate::place::Place;
 
 /// Flags of every command that reads records: how they are read, and their machine.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Reading {
+    #[command(flatten)]
+    pub(crate) limits: Limits,
     /// Samples a second [Hz], when the file does not say it
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) rate_hz: Option<f64>,

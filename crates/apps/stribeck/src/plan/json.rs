@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 use stribeck_analysis::plan::{ContactNoise, Plan};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_simulation::run::channels;
 
 use super::trial::{Cost, Trial};
+use crate::disk::trace_bytes;
 
 /// The plan; `cost` is `null` where nothing was tried, `contact_noise` where contact has no mesh.
 pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> Value {
@@ -47,8 +47,7 @@ pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> V
             "envelope_ms": plan.envelope.map(|(_, s)| 1e3 * s),
             "envelope_family": plan.envelope.map(|(name, _)| name),
             "elements_per_wavelength": plan.elements_per_wavelength,
-            "bytes": 8.0 * channels::names(scene).len() as f64
-                * (scene.duration / scene.interval).round(),
+            "bytes": trace_bytes(scene),
         },
         "elements": plan.elements,
         "cost": trial.map(cost),

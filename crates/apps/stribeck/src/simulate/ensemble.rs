@@ -26,7 +26,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let (dir, scene, ensemble) = match &options.resume {
         Some(run) => reopen(&place.locate_run(run), options)?,
         None => {
-            let scene = place.scene(options.scene.as_deref(), &options.set)?;
+            let scene = options.scene(place)?;
             let dir = reserve(options, place, &scene)?;
             let (seed, starts) = (options.seed.unwrap_or(SEED), options.starts.unwrap_or(1));
             let ensemble = Ensemble {
@@ -53,7 +53,8 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     match options.resume {
         None => dir.start_ensemble(&scene, &ensemble)?,
-        Some(_) => dir.write_ensemble(&scene, &ensemble)?,
+        Some(_) if due.is_empty() => dir.write_ensemble(&scene, &ensemble)?,
+        Some(_) => dir.go_on_ensemble(&scene, &ensemble)?,
     }
     let ensemble = Mutex::new(ensemble);
     let why = Shop::new("start", &due, jobs, &interrupt).run(&|shop, due, error| {

@@ -10,10 +10,10 @@ use crate::scene::Scene;
 /// Every field of a scene with its default, range and description.
 pub fn page() -> String {
     let text = String::from(
-        "# Every field of a scene\n\nWritten by `cargo xtask fields` from the table by which scenes are \
-         read; `cargo xtask fields --schema` prints the same as a JSON schema, for editors and other \
-         programs. What a scene does not say has the default behind the field; a number outside its range is \
-         refused with its line. *Up to* begins above 0.\n",
+        "# Every field of a scene\n\nWritten by `cargo xtask write-fields` from the table by which scenes are \
+         read. `stribeck fields load` prints those with `load` in their path, `stribeck fields --schema` all \
+         as a JSON schema, for editors and other programs. What a scene does not say has the default behind \
+         the field; a number outside its range is refused with its line. *Up to* begins above 0.\n",
     );
     let mut page = Page { text, described: Vec::new() };
     // Writing to a text cannot fail.

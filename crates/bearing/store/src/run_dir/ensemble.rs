@@ -57,6 +57,16 @@ impl RunDir {
         self.write_ensemble(scene, ensemble)
     }
 
+    /// Removes what was made from the samples of an ensemble whose starts go on, and writes its files.
+    ///
+    /// # Errors
+    ///
+    /// As [`RunDir::start_ensemble`].
+    pub fn go_on_ensemble(&self, scene: &Scene, ensemble: &Ensemble) -> Result<(), Error> {
+        files::remove_derived(&self.path)?;
+        self.write_ensemble(scene, ensemble)
+    }
+
     /// Replaces `scene.ron` and `ensemble.json`, each whole or not at all.
     ///
     /// # Errors

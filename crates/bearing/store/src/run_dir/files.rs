@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::de::DeserializeOwned;
 
-use super::{FILES, FOLDERS, LOCK, PARTIAL};
+use super::{DERIVED, FIGURES, FILES, FOLDERS, LOCK, PARTIAL};
 use crate::error::Error;
 use crate::run_info::RunInfo;
 use stribeck_scene::ensemble::{folder_name, number_of};
@@ -90,6 +90,12 @@ pub(super) fn remove_run(folder: &Path) -> Result<(), Error> {
         std::fs::remove_dir(&start).ok();
     }
     Ok(())
+}
+
+/// Removes what was made from the samples of a run.
+pub(super) fn remove_derived(run: &Path) -> Result<(), Error> {
+    DERIVED.iter().try_for_each(|name| remove(&run.join(name)))?;
+    remove_filled(run, FIGURES)
 }
 
 /// Removes the files that a run or its report wrote into the folder `name` of `run`, and no others.

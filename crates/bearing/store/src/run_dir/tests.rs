@@ -339,3 +339,20 @@ fn survives_files_that_a_killed_writer_left() {
     super::files::remove_partial(folder.path()).expect("they can be removed");
     assert_eq!(partial_files(folder.path()), [".notes.7-0.part"]);
 }
+
+/// A run that was made longer kept the record of its machine, and was judged by its first tenth.
+#[test]
+fn issue_what_was_made_from_a_shorter_run_goes_when_it_goes_on() {
+    let folder = Scratch::new("stale");
+    let run = folder.join("x");
+    write_run(&run);
+    std::fs::create_dir_all(run.join(FIGURES)).expect("writable");
+    let made = DERIVED.map(|name| run.join(name)).into_iter().chain([run.join(FIGURES).join("a.svg")]);
+    let made: Vec<_> = made.collect();
+    let mine = run.join(FIGURES).join("mine.txt");
+    made.iter().chain([&mine]).for_each(|file| std::fs::write(file, "old").expect("writable"));
+    let dir = RunDir::reopen(&run).expect("a run");
+    assert!(made.iter().all(|file| file.exists()), "a run that has not gone on has all");
+    dir.go_on(&Scene::default(), &info(Status::Running)).expect("writable");
+    assert!(made.iter().all(|file| !file.exists()) && mine.exists() && dir.trace().exists());
+}

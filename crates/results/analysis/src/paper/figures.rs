@@ -103,10 +103,10 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
     }
     let khz = |hz: Option<f64>| hz.map(|hz| 1e-3 * hz);
     all.extend([
-        number("3", "Fundamental tone", "Hz", TONE_HZ, 3.0, 10.0, sensor.tone_hz),
-        number("3", "Its fifth harmonic", "kHz", 23.0, 0.5, 0.1, khz(sensor.fifth_hz)),
+        number("3", TONE[0], "Hz", TONE_HZ, 3.0, 10.0, sensor.tone_hz),
+        number("3", TONE[1], "kHz", 23.0, 0.5, 0.1, khz(sensor.fifth_hz)),
         level("6", "Between the impulses, notched, peak", FILTERED_G, sensor.between_filtered_g),
-        number("7", "Taken from the tone by the notch", "dB", 25.0, 0.5, 2.0, sensor.notch_db),
+        number("7", TONE[2], "dB", 25.0, 0.5, 2.0, sensor.notch_db),
     ]);
     let of_filter = summary.notch.as_ref().and_then(|notch| notch.paper_4545_db);
     all.push(number("7", "Taken at 4545 Hz by the paper\u{2019}s notch", "dB", 4.0, 0.5, 0.0, of_filter));
@@ -138,6 +138,16 @@ pub fn beside(starts: &[Vec<Shown>]) -> Vec<Beside> {
         }
     };
     first.iter().enumerate().map(one).collect()
+}
+
+/// The tone of facets, and what is measured of it.
+const TONE: [&str; 3] = ["Fundamental tone", "Its fifth harmonic", "Taken from the tone by the notch"];
+
+impl Shown {
+    /// Whether it is a number of the tone that facets make, which contact on arcs does not have.
+    pub fn is_of_tone(&self) -> bool {
+        TONE.contains(&self.quantity.as_str())
+    }
 }
 
 impl Beside {

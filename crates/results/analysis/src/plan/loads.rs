@@ -56,7 +56,7 @@ const FALLS: f64 = 3.0;
 
 /// Problems to expect, each with its reason and remedy.
 pub(super) fn dangers(scene: &ResolvedScene, loads: &Loads) -> Vec<String> {
-    [scene.overload(), cage(scene), penetration(scene, loads)].into_iter().flatten().collect()
+    scene.doubts().into_iter().chain(cage(scene)).chain(penetration(scene, loads)).collect()
 }
 
 /// How far the cage moves across before corners of its pockets stop it [m]; infinite where none does.
@@ -145,6 +145,23 @@ mod tests {
         // 44 (1 − 18/181.98) 24 · 30 · 18 = 513.8 kN.
         assert!((loads.static_safety() - 10.28).abs() < 0.02, "{}", loads.static_safety());
         assert!(dangers.is_empty(), "{dangers:?}");
+    }
+
+    /// Spalls that no run shows, and 1000 samples a second, were planned and simulated without a word.
+    #[test]
+    fn issue_what_a_run_will_not_show_is_said_beforehand() {
+        for (text, said) in [
+            ("defect: (angle_deg: 270)", "outside of the load zone"),
+            ("defect: (length_mm: 60)", "stand 26.2 mm apart"),
+            ("output: (interval_us: 1000), film: None", "1000 samples a second"),
+        ] {
+            let (_, dangers) = of(&format!("({text})"));
+            assert!(dangers.len() == 1 && dangers[0].contains(said), "{text}: {dangers:?}");
+        }
+        // At the edge of the load zone, and the load turned to the spall.
+        for text in ["defect: (angle_deg: 40)", "defect: (angle_deg: 270), operation: (load_angle_deg: 90)"] {
+            assert!(of(&format!("({text})")).1.is_empty(), "{text}");
+        }
     }
 
     /// An NU 2210 by fields, with the cage that a message had proposed for it, diverged after 377 ms; a plan

@@ -33,7 +33,10 @@ pub(super) fn first_screen(of: &Subject<'_>, sections: &[Section]) -> Result<Mar
             p class="headline" { (with_code(&headline(of))) }
             (picture(sections)?)
             div class="answer" {
-                @if let Some(paper) = &of.paper { p { (paper.not_met()) } }
+                @if let Some(paper) = &of.paper {
+                    p { (with_code(paper.of_tone())) }
+                    p { (paper.not_met()) }
+                }
                 // The paper's table has the peaks.
                 p { strong { "The defect. " } (defect(run, summary, of.paper.is_none())) }
                 p {
@@ -339,7 +342,11 @@ fn physics(summary: &Summary) -> String {
     let seen: Vec<String> =
         of_defect.iter().filter(|a| a.measured_hz.is_some()).map(|a| format!("×{}", a.harmonic)).collect();
     let lines = of_defect.iter().find(|a| a.harmonic == 1).map(|first| {
-        let (name, hz) = (&first.name, first.from_motion_hz.unwrap_or(first.predicted_hz));
+        let (name, moved_hz) = (&first.name, first.from_motion_hz.unwrap_or(first.predicted_hz));
+        // As the sentence above has it, which reads the envelope.
+        let families = summary.diagnosis.iter().flat_map(|diagnosis| &diagnosis.families);
+        let told = families.filter(|f| f.claimed && f.present && f.name.name() == *name);
+        let hz = told.filter_map(|f| f.measured_hz).next().unwrap_or(moved_hz);
         let periods = 1e-3 * summary.run.simulated_ms * hz;
         if hz == 0.0 {
             String::new()

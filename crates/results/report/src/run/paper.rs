@@ -10,7 +10,7 @@ use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper::{self, Beside};
 use stribeck_analysis::summary::{SensorLevels, Summary};
 use stribeck_diagnosis::words::numbers::significant;
-use stribeck_scene::scene::{ContactFormula, Scene};
+use stribeck_scene::scene::{ContactFormula, ContactSurface, Scene};
 
 use crate::page::{self, Section, cell, charts, grouped, wide_table};
 
@@ -37,6 +37,10 @@ pub(crate) struct PaperCase<'a> {
     softness: &'static str,
     /// Whether the record is shorter than the paper's: a missing event may then lie after its end.
     short: bool,
+    /// Whether contact is with arcs, and the tone of the mesh is gone with the facets.
+    cured: bool,
+    /// Whether contact is with facets.
+    faceted: bool,
 }
 
 impl<'a> PaperCase<'a> {
@@ -70,12 +74,33 @@ impl<'a> PaperCase<'a> {
         let end_s = drawn.start_s + drawn.interval_s * sensor.raw_g.len() as f64;
         let short = end_s < figures::RECORD_S.1 - 2.0 * drawn.interval_s;
         let softness = if scene.contact.formula == ContactFormula::Hertz { "" } else { SOFT };
-        Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers), softness, short })
+        let beside = paper::beside(&numbers);
+        let faceted = scene.contact.surface == ContactSurface::Facet;
+        let cured = !faceted && beside.iter().any(|b| b.shown.is_of_tone() && b.ours.is_none());
+        Some(Self { starts, drawn, number, levels, sensor, beside, softness, short, cured, faceted })
     }
 
     /// Whether a number is missing because the record ends before it can show.
     fn is_behind_the_end(&self, b: &Beside) -> bool {
         self.short && b.ours.is_none_or(|ours| ours.mean == 0.0)
+    }
+
+    /// Whether a number is one of the tone that contact on arcs has taken away.
+    fn is_cured(&self, b: &Beside) -> bool {
+        self.cured && b.shown.is_of_tone()
+    }
+
+    /// What became of the tone of the mesh, and the scene that shows the other case.
+    pub(crate) fn of_tone(&self) -> &'static str {
+        match (self.cured, self.faceted) {
+            (true, _) => {
+                "The tone of the mesh at 4.7 kHz is gone, as contact on arcs predicts; `singh2014.ron` has it."
+            }
+            (_, true) => {
+                "The tone is one of the mesh: `singh2014_smooth.ron` is the same run with contact on arcs."
+            }
+            _ => "",
+        }
     }
 
     /// The section: differences, numbers, the paper's figures in its order, and `more` folded up behind them.
@@ -88,6 +113,7 @@ impl<'a> PaperCase<'a> {
         }
         let before = html! {
             p { (self.verdict()) }
+            p { (page::with_code(self.of_tone())) }
             (self.table())
             p class="hint" { (page::with_code(&self.about())) }
         };
@@ -101,7 +127,7 @@ impl<'a> PaperCase<'a> {
 
     /// The numbers whose event is on record.
     fn on_record(&self) -> impl Iterator<Item = &Beside> {
-        self.beside.iter().filter(|b| !self.is_behind_the_end(b))
+        self.beside.iter().filter(|b| !self.is_behind_the_end(b) && !self.is_cured(b))
     }
 
     /// How many numbers of the paper's figures are met.
@@ -126,13 +152,12 @@ impl<'a> PaperCase<'a> {
 
     /// Quantities that differ by more than the scatter, the largest difference first, then the others.
     fn verdict(&self) -> String {
-        let missing = self.beside.iter().filter(|b| self.is_behind_the_end(b)).count();
-        let mut off: Vec<&Beside> =
-            self.beside.iter().filter(|b| b.differs() && !self.is_behind_the_end(b)).collect();
+        let missing = self.beside.iter().filter(|b| self.is_behind_the_end(b) && !self.is_cured(b)).count();
+        let mut off: Vec<&Beside> = self.on_record().filter(|b| b.differs()).collect();
         off.sort_by(|a, b| b.distance().total_cmp(&a.distance()));
         let differing: Vec<String> =
             off.iter().map(|b| format!("{} (Fig. {})", told(b), b.shown.figure)).collect();
-        let all = self.beside.len() - missing;
+        let all = self.on_record().count();
         let alike = all - off.len();
         let short = if missing > 0 {
             format!(
@@ -170,7 +195,7 @@ impl<'a> PaperCase<'a> {
                 td class="n" { (printed(b)) }
                 (cell(ours(b)))
                 @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
-                td { @if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
+                td { @if self.is_cured(b) { "gone with the facets" } @else if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
             }
         };
         wide_table(
