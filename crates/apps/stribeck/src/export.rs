@@ -171,11 +171,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 
 /// Writes the channels of a record in another format.
 fn convert(file: &Path, options: &Options) -> Result<ExitCode> {
-    let of_runs = options.sensor.is_some() || options.path.is_some() || options.machine.is_some();
+    let of_runs = options.sensor.is_some() || options.machine.is_some();
     ensure!(
-        options.to.holds_signals(false) && !of_runs,
-        "`{}` is a record: it is converted to csv, npz, mat, uff, parquet or wav64, without `--sensor`, `--path` \
-         or `--machine`",
+        options.to.holds_signals() && !of_runs,
+        "`{}` is a record: it is converted to csv, npz, mat, uff, parquet or wav64, without `--sensor` or \
+         `--machine`",
         shown(file)
     );
     let recording = Recording::open(file)?;
