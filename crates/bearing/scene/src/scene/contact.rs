@@ -10,7 +10,7 @@ group! {
     pub struct ContactScene {
         /// Points at which the penalty acts.
         pub method: ContactMethod = ContactMethod::Integrated;
-        /// Curve that the facets of raceways and rollers represent.
+        /// Curve that the facets of raceways, rollers and seats represent.
         pub surface: ContactSurface = ContactSurface::Facet;
         /// How the surfaces of raceways and rollers move with their nodes.
         pub interpolation: ContactInterpolation = ContactInterpolation::Linear;
@@ -47,7 +47,7 @@ words! {
 }
 
 words! {
-    /// Curve that the facets of raceways and rollers represent. Corners (walls of the defect, cage) stay
+    /// Curve that the facets of raceways, rollers and seats represent. Corners (walls of the defect, cage) stay
     /// sharp in any case.
     pub enum ContactSurface: Copy, Eq {
         /// The chords themselves.

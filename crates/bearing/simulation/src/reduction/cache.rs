@@ -22,7 +22,7 @@ use crate::reduction::{reduce::ReducedMesh, structure::modes_khz};
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced vK\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced vL\n";
 
 /// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
 /// their defaults. Rollers lie symmetrically about the first groove, as few as may be in it.
