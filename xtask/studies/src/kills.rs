@@ -1,5 +1,5 @@
-//! `cargo xtask study kills`: runs and campaigns are disturbed at random moments and continued; their files must
-//! be those of undisturbed ones.
+//! `cargo xtask study kills`: runs with their reports, and campaigns, are disturbed at random moments and continued;
+//! their files must be those of undisturbed ones, and the report the one that the samples give.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -48,7 +48,7 @@ const YEAR_S: f64 = 3.2e7;
 /// What is disturbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Job {
-    /// One run, continued from its checkpoint.
+    /// One run, continued from its checkpoint, and its report.
     Run,
     /// 64 runs, of which those that are not complete are run again.
     Campaign,
@@ -86,6 +86,8 @@ struct Tally {
     jumps: usize,
     /// While a run was being continued.
     again: usize,
+    /// Between the last step and the end of the report.
+    in_report: usize,
     /// Before there was a checkpoint: the run restarts.
     too_early: usize,
     /// Runs and campaigns that came to their end.
@@ -120,7 +122,7 @@ pub(crate) fn measure(options: &Options, host: &Host) -> Result<Answer> {
     let [first, last] = tally.memory();
     let said = format!(
         "{} kills, {} requests to end, {} full disks and {} jumps of the clock within {:.2} hours, {} of them while a \
-         run was being continued and {} before its first checkpoint: {runs} runs and {campaigns} campaigns with the \
+         run was being continued, {} during its report and {} before its first checkpoint: {runs} runs and {campaigns} campaigns with the \
          bytes of undisturbed ones; campaigns took {first:.0?} MiB in the first quarter and {last:.0?} in the last",
         tally.kills,
         tally.terminated,
@@ -128,6 +130,7 @@ pub(crate) fn measure(options: &Options, host: &Host) -> Result<Answer> {
         tally.jumps,
         (host.seconds() - began) / 3600.0,
         tally.again,
+        tally.in_report,
         tally.too_early
     );
     Ok(Answer { said: Some(said), ..Answer::default() })
@@ -169,6 +172,9 @@ impl Disturber<'_> {
                     found.0,
                     folder.display()
                 );
+            }
+            if job == Job::Run {
+                self.check_report(&folder)?;
             }
             fs::remove_dir_all(&folder).ok();
             tally.finished[at] += 1;
@@ -222,7 +228,10 @@ impl Disturber<'_> {
             match job {
                 Job::Run => {
                     if is_complete(folder).is_some() {
-                        break;
+                        if folder.join("summary.json").exists() {
+                            break;
+                        }
+                        tally.in_report += 1;
                     }
                     // Before the first checkpoint there is nothing to continue; the program refuses, and a new
                     // run is begun.
@@ -294,7 +303,7 @@ impl Disturber<'_> {
         let fixtures = self.host.root().join("fixtures");
         let mut command = match job {
             Job::Run => {
-                let mut command = self.stribeck(&["simulate", "--no-report"], threads)?;
+                let mut command = self.stribeck(&["simulate"], threads)?;
                 command.arg(fixtures.join("scenes/quick.ron"));
                 command.arg(format!("--set=solver.duration_ms={}", self.options.duration_ms));
                 command.arg("--set=solver.start=sudden");
@@ -309,8 +318,23 @@ impl Disturber<'_> {
         command.arg("--out").arg(folder).spawn().context("cannot start the program")
     }
 
+    /// The report that is there must be the one that the samples give, with nothing half written beside it.
+    fn check_report(&self, run: &Path) -> Result<()> {
+        let before = report_of(run)?;
+        let again =
+            self.host.stribeck()?.arg("report").arg(run).output().context("cannot start the program")?;
+        ensure!(again.status.success(), "no report: {}", String::from_utf8_lossy(&again.stderr));
+        let after = report_of(run)?;
+        let other = before.iter().find(|(path, bytes)| after.get(*path) != Some(bytes));
+        let other = other.map(|(path, _)| path);
+        ensure!(other.is_none() && before.len() == after.len(), "a report that is not whole: {other:?}");
+        let half = before.keys().find(|path| path.extension().is_some_and(|end| end == "part"));
+        ensure!(half.is_none(), "what a kill has left stays: {half:?}");
+        Ok(())
+    }
+
     fn resume(&self, run: &Path, threads: usize) -> Result<Child> {
-        let mut command = self.stribeck(&["simulate", "--no-report"], threads)?;
+        let mut command = self.stribeck(&["simulate"], threads)?;
         command.arg("--resume").arg(run).spawn().context("cannot continue a run")
     }
 
@@ -389,6 +413,14 @@ impl Disturber<'_> {
 fn is_complete(run: &Path) -> Option<Vec<u8>> {
     let info = fs::read_to_string(run.join("run.json")).ok()?;
     info.contains("\"status\": \"complete\"").then(|| info.into_bytes())
+}
+
+/// All files of a run and its figures.
+fn report_of(run: &Path) -> Result<BTreeMap<PathBuf, Vec<u8>>> {
+    let entries = [run.to_owned(), run.join("figures")].into_iter().map(fs::read_dir);
+    let entries = entries.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().flatten();
+    let files = entries.map(|entry| entry.path()).filter(|path| path.is_file());
+    files.map(|path| Ok((path.clone(), fs::read(path)?))).collect()
 }
 
 /// Largest resident memory of a process so far [MiB].

@@ -6,6 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Result, ensure};
 use serde_json::json;
+use stribeck_store::run_dir::Stage;
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -48,13 +49,14 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let now = SystemTime::now();
     for item in &all {
         say!(
-            "{:<width$}  {:<10}  {:<28} {:>9}  {}{}",
+            "{:<width$}  {:<10}  {:<28} {:>9}  {}{}{}",
             item.name,
             item.kind.word(),
             item.state,
             in_words(item.bytes),
             item.written.map_or_else(String::new, |written| ago(written, now)),
-            if item.page().is_some() { "" } else { ", no page" }
+            if item.page().is_some() { "" } else { ", no page" },
+            item.next().map_or_else(String::new, |next| format!(", next: {} {next}", place.program))
         );
     }
     let cached = size(&folder.join(CACHE)).0;
@@ -76,6 +78,8 @@ fn as_json(item: &Item) -> serde_json::Value {
         "path": item.path,
         "kind": item.kind.word(),
         "state": item.state,
+        "stage": item.stage.map(Stage::word),
+        "next": item.next(),
         "bytes": item.bytes,
         "written_unix_s": written.map(|since| since.as_secs()),
         "page": item.page(),

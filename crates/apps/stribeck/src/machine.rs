@@ -27,11 +27,14 @@ pub(crate) fn keep(dir: &RunDir) -> Result<()> {
     let Some(record) = machine::of_run(&run).context("no record of the machine's sensor")? else {
         return Ok(());
     };
-    let mut writer = TraceWriter::create(&file, &["time_s", CHANNEL])?;
+    // The name of a whole file: one that is there is not made again.
+    let beside = file.with_extension("npy.part");
+    let mut writer = TraceWriter::create(&beside, &["time_s", CHANNEL])?;
     for (time, sample) in times(&record).zip(&record.samples) {
         writer.push(&[time, *sample])?;
     }
-    Ok(writer.finish()?)
+    writer.finish()?;
+    std::fs::rename(&beside, &file).with_context(|| format!("cannot write `{}`", file.display()))
 }
 
 /// What the sensor of a machine records of a run: of that in a file, or of its scene's.

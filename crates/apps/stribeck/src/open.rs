@@ -27,9 +27,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             match item.page() {
                 Some(page) => page,
                 None if matches!(item.kind, Kind::Run | Kind::Ensemble) => bail!(
-                    "`{0}` has no page yet: `{1} report {0}` writes it",
+                    "`{0}` has no page yet, it is {2}: `{1} report {0}` writes one{3}",
                     shown(&item.path),
-                    place.program
+                    place.program,
+                    item.state,
+                    match item.next().filter(|next| next.starts_with("simulate")) {
+                        Some(next) =>
+                            format!(" of what there is, `{} {next}` brings the run on", place.program),
+                        None => String::new(),
+                    }
                 ),
                 None => bail!("`{}` has no page: it is {}", shown(&item.path), item.state),
             }

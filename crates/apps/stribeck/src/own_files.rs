@@ -87,7 +87,9 @@ impl Contents {
             let filled = FILLED.iter().find(|(of, _)| *of == name && is_folder);
             if let Some((_, endings)) = filled {
                 self.add_files(&path, |file| {
-                    file.extension().and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e))
+                    let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+                    let end = Path::new(half_written(name).unwrap_or(name)).extension();
+                    end.and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e))
                 });
             } else if is_folder && name == LINKS {
                 self.add_files(&path, Path::is_symlink);
@@ -133,15 +135,21 @@ fn is_own(name: &str) -> bool {
 
 /// Whether a name is that of a file that a killed process left: `.run.json.123-4.part`, `runs.parquet.123.new`.
 fn is_half_written(name: &str) -> bool {
-    let hidden = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
+    let known = |file: &str| FILES.iter().any(|of| *of == file || of.split('.').next() == Some(file));
     let beside = name.strip_suffix(".new").or_else(|| name.strip_suffix(".part"));
-    let base = |name: &str| {
-        name.rsplit_once('.').is_some_and(|(file, writer)| {
-            writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-')
-                && FILES.iter().any(|of| *of == file || of.split('.').next() == Some(file))
-        })
-    };
-    hidden.is_some_and(base) || beside.is_some_and(|name| base(name) || FILES.contains(&name))
+    let base = |name| written_by(name).is_some_and(known);
+    half_written(name).is_some_and(known) || beside.is_some_and(|name| base(name) || FILES.contains(&name))
+}
+
+/// The file that a hidden one of a killed process was to become.
+fn half_written(name: &str) -> Option<&str> {
+    written_by(name.strip_prefix('.')?.strip_suffix(".part")?)
+}
+
+/// A name without the number of the process that writes it.
+fn written_by(name: &str) -> Option<&str> {
+    let (file, writer) = name.rsplit_once('.')?;
+    writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-').then_some(file)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use anyhow::{Result, bail};
-use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_dir::{RunDir, Stage};
 use stribeck_store::run_info::{RunInfo, Status};
 
 use crate::place::{Place, shown};
@@ -61,6 +61,8 @@ pub(crate) struct Item {
     pub(crate) kind: Kind,
     /// How it stands, in words.
     pub(crate) state: String,
+    /// How far a run or an ensemble has come.
+    pub(crate) stage: Option<Stage>,
     /// When its newest file was written.
     pub(crate) written: Option<SystemTime>,
     pub(crate) bytes: u64,
@@ -71,7 +73,22 @@ impl Item {
         let kind = Kind::of(path)?;
         let (bytes, written) = size(path);
         let name = path.file_name().map_or_else(|| shown(path), |n| n.to_string_lossy().into_owned());
-        Some(Self { name, path: path.to_owned(), kind, state: state(path, kind), written, bytes })
+        let stage = matches!(kind, Kind::Run | Kind::Ensemble).then(|| Stage::of(path));
+        Some(Self {
+            name,
+            path: path.to_owned(),
+            kind,
+            state: state(path, kind, stage),
+            stage,
+            written,
+            bytes,
+        })
+    }
+
+    /// Arguments of the program that bring it to its next state; none while another program does.
+    pub(crate) fn next(&self) -> Option<String> {
+        let next = self.stage?.next(Path::new(&shown(&self.path)));
+        next.filter(|_| !is_held(&self.path))
     }
 
     pub(crate) fn page(&self) -> Option<PathBuf> {
@@ -123,14 +140,17 @@ pub(crate) fn find(asked: &Path, place: &Place) -> Result<Item> {
     bail!("there is no `{asked}`, as a path or below `{}`: {hint}", shown(&place.runs()));
 }
 
-fn state(path: &Path, kind: Kind) -> String {
+fn state(path: &Path, kind: Kind, stage: Option<Stage>) -> String {
+    let word = stage.map_or("", Stage::word);
     match kind {
         Kind::Run => match RunDir::open(path).and_then(|dir| dir.read_info()) {
-            Ok(info) => of_run(&info, is_held(path)),
+            Ok(info) => of_run(&info, stage, is_held(path)),
             Err(_) => "its run.json cannot be read".to_owned(),
         },
         Kind::Ensemble => match RunDir::open_ensemble(path).and_then(|dir| dir.read_ensemble()) {
-            Ok((scene, ensemble)) => format!("{} starts of {} ms", ensemble.starts, scene.solver.duration_ms),
+            Ok((scene, ensemble)) => {
+                format!("{word}, {} starts of {} ms", ensemble.starts, scene.solver.duration_ms)
+            }
             Err(_) => "its ensemble.json cannot be read".to_owned(),
         },
         Kind::Campaign => {
@@ -146,12 +166,16 @@ fn state(path: &Path, kind: Kind) -> String {
     }
 }
 
-fn of_run(info: &RunInfo, held: bool) -> String {
+fn of_run(info: &RunInfo, stage: Option<Stage>, held: bool) -> String {
     let ms = (1e6 * info.simulated_s).round() / 1e3;
     match info.status {
+        Status::Complete if stage == Some(Stage::Reported) => format!("reported, {ms} ms"),
         Status::Complete => format!("complete, {ms} ms"),
         Status::Diverged => format!("diverged after {ms} ms"),
         Status::Interrupted => format!("interrupted after {ms} ms"),
+        Status::Running if stage == Some(Stage::Planned) && !held => {
+            "planned, killed before its first step".to_owned()
+        }
         Status::Running if held => format!("running, {ms} ms so far"),
         Status::Running => format!("killed after {ms} ms"),
     }

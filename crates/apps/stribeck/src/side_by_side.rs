@@ -203,12 +203,19 @@ impl<'a> Shop<'a> {
 }
 
 /// Whether the files of a run are not what a run leaves, so that it cannot be continued.
-fn is_damage(error: &Error) -> bool {
-    use StoreError::{Mesh, NotARun, OtherScene, RunInfo, Trace};
+pub(crate) fn is_damage(error: &Error) -> bool {
+    use StoreError::{Mesh, NotARun, OtherScene, RunInfo, Trace, Unfinished};
     matches!(
         error,
         Error::Resume { .. }
-            | Error::Store(Trace { .. } | Mesh { .. } | NotARun { .. } | OtherScene { .. } | RunInfo { .. })
+            | Error::Store(
+                Trace { .. }
+                    | Mesh { .. }
+                    | NotARun { .. }
+                    | Unfinished { .. }
+                    | OtherScene { .. }
+                    | RunInfo { .. }
+            )
     )
 }
 

@@ -11,7 +11,7 @@ use stribeck_scene::scene::Scene;
 use stribeck_simulation as simulation;
 use stribeck_simulation::run::host::Progress;
 use stribeck_store::Error;
-use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_dir::{RunDir, Stage};
 use stribeck_store::run_info::{RunInfo, Status, clock};
 
 use crate::disk;
@@ -145,11 +145,18 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         meter.show(progress);
         interrupt.flow()
     };
-    let finished = host::with(threads, |host| match options.resume {
-        Some(_) if options.set.is_empty() => simulation::resume(&dir, host, &mut watch),
-        Some(_) => simulation::extend(&dir, scene.solver.duration_ms, host, &mut watch),
-        None => simulation::simulate(&scene, &dir, host, &mut watch),
-    });
+    let left = options.resume.as_ref().and_then(|_| at_its_end(&dir, &scene, options.no_report));
+    let only_reported = left.is_some();
+    let finished = left.map_or_else(
+        || {
+            host::with(threads, |host| match options.resume {
+                Some(_) if options.set.is_empty() => simulation::resume(&dir, host, &mut watch),
+                Some(_) => simulation::extend(&dir, scene.solver.duration_ms, host, &mut watch),
+                None => simulation::simulate(&scene, &dir, host, &mut watch),
+            })
+        },
+        Ok,
+    );
     meter.finish();
     if finished.is_err() {
         // The interrupt has its copy of the place, too, so that nothing made for a run that never began goes
@@ -178,7 +185,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
     }
     // A run that broke off has a report too: the samples until then show the cause.
-    if dir.has_started() && !options.no_report {
+    if (dir.has_started() || only_reported) && !options.no_report {
         match report::write(dir.path()) {
             Ok(summary) => {
                 if let Some(diagnosis) = summary.diagnosis {
@@ -189,7 +196,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             // The run's own error matters more than that of its report.
             Err(error) if finished.is_err() => caution!("no report: {error}"),
             Err(error) => {
-                return Err(anyhow::Error::from(error).context("the run is complete, its report is not"));
+                let again = format!(
+                    "the run is complete, its report is not: `{} report {}` writes it",
+                    place.program,
+                    shown(dir.path())
+                );
+                return Err(anyhow::Error::from(error).context(again));
             }
         }
     }
@@ -198,6 +210,17 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Status::Interrupted => ExitCode::from(interrupt::EXIT_CODE),
         Status::Diverged | Status::Running => ExitCode::FAILURE,
     })
+}
+
+/// What is known of a run that has taken all of its steps and was killed between them and its report, or its
+/// move to the place of an earlier run.
+fn at_its_end(dir: &RunDir, scene: &Scene, no_report: bool) -> Option<RunInfo> {
+    let unfinished = match Stage::of(dir.path()) {
+        Stage::Complete => !no_report || dir.replaces().is_some(),
+        Stage::Diverged => !no_report,
+        Stage::Planned | Stage::Running | Stage::Reported => false,
+    };
+    dir.read_info().ok().filter(|info| unfinished && info.scene_hash == scene.hash())
 }
 
 /// The folder of a new run. The user's own choice is used or refused; the default avoids existing runs.

@@ -49,6 +49,10 @@ pub enum Error {
         below `runs/`", path.display())]
     NotARun { path: PathBuf, missing: &'static str },
 
+    #[error("`{}` has a scene, and no `run.json`: its run ended before that was written. `stribeck {next}` \
+        brings it on", path.display())]
+    Unfinished { path: PathBuf, next: String },
+
     #[error(
         "`{}` is an ensemble, and each of its {starts} starts is a run: name one of them, such as `{}`",
         path.display(), path.join(folder_name(1)).display()

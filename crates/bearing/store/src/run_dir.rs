@@ -15,6 +15,9 @@
 //! the new one is complete. Results that other commands make from runs never go into the folder of a run
 //! ([`check_folder`]).
 //!
+//! A run is planned, running, complete and reported ([`Stage`]). `summary.json` is the last file of a report,
+//! and its mark.
+//!
 //! The checkpoint is there from the first step of a run on. After a kill the folder can be read, and
 //! continued from the last checkpoint: traces never hold fewer samples than it counts. A complete run keeps
 //! its last one, so that it can be made longer.
@@ -27,20 +30,22 @@ mod product;
 mod replacement;
 mod reservation;
 mod run;
+mod stage;
 
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::run_info::RunInfo;
+use crate::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
 
 use earlier::Earlier;
 pub use ensemble::{Ensemble, State};
-pub use files::write_atomic;
+pub use files::{write_atomic, write_whole};
 pub use kept::{Keep, SENSOR};
 pub use product::check_folder;
 pub use reservation::Reservation;
 pub use run::Run;
+pub use stage::Stage;
 
 const SCENE: &str = "scene.ron";
 const INFO: &str = "run.json";
@@ -225,11 +230,26 @@ impl RunDir {
     ///
     /// [`Error::Io`] when the disk refuses; the earlier `run.json` is then still there.
     pub fn write_info(&self, info: &RunInfo) -> Result<(), Error> {
+        if info.status != Status::Running {
+            // A report from before is one of a shorter run.
+            files::remove(&self.summary())?;
+        }
         let path = self.info();
         let mut text = serde_json::to_vec_pretty(info)
             .map_err(|source| Error::RunInfo { path: path.clone(), source })?;
         text.push(b'\n');
         write_atomic(&path, &text)
+    }
+
+    /// Takes away the mark of an earlier report, `summary.json`, which is written again when all others of its
+    /// files are, and what a killed report has left of them.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when a file cannot be removed.
+    pub fn begin_report(&self) -> Result<(), Error> {
+        files::remove(&self.summary())?;
+        files::remove_partial_report(&self.path)
     }
 
     /// Reserves the folder of a run, to continue it. Without a `run.json`, a checkpoint is enough.
@@ -336,6 +356,10 @@ fn is_run(path: &Path, names: &[&'static str]) -> Result<(), Error> {
     match names.iter().find(|name| !path.join(name).is_file()) {
         Some(&INFO) if RunDir::is_ensemble(path) => {
             Err(Error::Ensemble { path: path.to_owned(), starts: files::start_folders(path).len() })
+        }
+        Some(&INFO) if path.join(LOCK).exists() || path.join(CHECKPOINT).exists() => {
+            let next = Stage::of(path).next(path).unwrap_or_default();
+            Err(Error::Unfinished { path: path.to_owned(), next })
         }
         Some(missing) => Err(Error::NotARun { path: path.to_owned(), missing }),
         None => Ok(()),

@@ -22,13 +22,15 @@ use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 pub fn write_ensemble(folder: &Path) -> Result<EnsembleSummary, Error> {
     let findings = EnsembleFindings::of(folder)?;
     let dir = RunDir::open_ensemble(folder)?;
-    write_atomic(&dir.summary(), json(&findings.summary)?.as_bytes())?;
     let sections = sections(&findings, &dir);
     let figures: Vec<&Item> = sections.iter().flat_map(|section| &section.figures).collect();
     let words = ElementWords::of(&findings.scene.written);
+    let (numbers, page) = (json(&findings.summary)?, page(&findings, &sections)?.into_string());
+    dir.begin_report()?;
     write_figures(&figures, &dir.figures(), words)?;
-    let page = page(&findings, &sections)?.into_string();
     write_atomic(&dir.report(), words.markup(page).as_bytes())?;
+    // The last of its files: with it the ensemble is reported.
+    write_atomic(&dir.summary(), numbers.as_bytes())?;
     Ok(findings.summary)
 }
 

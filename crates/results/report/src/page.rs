@@ -8,6 +8,7 @@ use std::thread;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
+use stribeck_store::run_dir::write_whole;
 
 use crate::element_words::ElementWords;
 use crate::{Error, plot};
@@ -36,8 +37,7 @@ pub(crate) fn write_figures(figures: &[&Item], folder: &Path, words: ElementWord
 /// A figure as SVG and as PNG.
 fn write_figure(figure: &Item, folder: &Path, words: ElementWords) -> Result<(), Error> {
     let write = |form: &str, bytes: &[u8]| {
-        let path = folder.join(format!("{}.{form}", figure.id()));
-        fs::write(&path, bytes).map_err(|why| Error::Write { path, why })
+        write_whole(&folder.join(format!("{}.{form}", figure.id())), bytes).map_err(Error::from)
     };
     let svg = words.markup(figure.to_svg()?);
     write("svg", svg.as_bytes())?;

@@ -39,7 +39,7 @@ use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
 use stribeck_scene::scene::ModelScene;
-use stribeck_store::run_dir::{LAB, Run, write_atomic};
+use stribeck_store::run_dir::{LAB, Run, RunDir, write_atomic};
 use stribeck_store::run_info::Status;
 
 use crate::element_words::ElementWords;
@@ -78,15 +78,18 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
     findings.summary.notes.splice(0..0, run.damage());
     let (stress, mut missing) = stress::section(&record, &findings, run_dir)?;
     findings.summary.notes.append(&mut missing);
-    write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
     let paper = PaperCase::of_run(&run.scene.written, &findings);
     let subject = Subject { run: &run, folder: run_dir, record: &record, findings: &findings, paper };
     let sections = sections(&subject, stress)?;
     let figures: Vec<&Item> = sections.iter().flat_map(|section| &section.figures).collect();
     let words = ElementWords::of(&run.scene.written);
-    write_figures(&figures, &run_dir.join("figures"), words)?;
-    let page = page(&subject, &sections)?.into_string();
-    write_atomic(&run_dir.join("report.html"), words.markup(page).as_bytes())?;
+    let (numbers, page) = (json(&findings.summary)?, page(&subject, &sections)?.into_string());
+    let dir = RunDir::open(run_dir)?;
+    dir.begin_report()?;
+    write_figures(&figures, &dir.figures(), words)?;
+    write_atomic(&dir.report(), words.markup(page).as_bytes())?;
+    // The last of its files: with it the run is reported.
+    write_atomic(&dir.summary(), numbers.as_bytes())?;
     Ok(findings.summary)
 }
 

@@ -1,7 +1,7 @@
 //! NumPy archives (`.npz`): a zip file of arrays.
 
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read, Write};
+use std::io::{BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
 
 use stribeck_dsp::channel::memory;
@@ -14,6 +14,23 @@ use crate::{Channel, Error, Recording, Result, npy};
 
 const FORMAT: &str = "NumPy .npz";
 
+/// Names what a zip archive without arrays is, and the way on: spreadsheets and documents are zip archives, too.
+fn foreign<R: Read + Seek>(archive: &ZipArchive<R>) -> String {
+    let holds = |part: &str| archive.file_names().any(|name| name == part);
+    if holds("xl/workbook.xml") || holds("xl/workbook.bin") {
+        return "it is a workbook of Excel (.xlsx): save the sheet with the samples as CSV (File, Save As, \"CSV UTF-8\"; \
+             or `libreoffice --convert-to csv FILE`), and open that"
+            .to_owned();
+    }
+    if holds("content.xml") && holds("mimetype") {
+        return "it is a spreadsheet or document of LibreOffice: save the sheet with the samples as CSV \
+             (`libreoffice --convert-to csv FILE`), and open that"
+            .to_owned();
+    }
+    let other = archive.file_names().next().unwrap_or_default();
+    format!("it is a zip archive without arrays of NumPy: unpack it first; it holds `{other}`")
+}
+
 /// Opens an archive. Arrays that are stored without compression stay in the file; texts and other values that
 /// are not real numbers are left out with a note.
 pub fn open(path: &Path) -> Result<Recording> {
@@ -22,12 +39,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|e| damaged(e.to_string()))?;
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let mut asked = 0_u64;
-    if let (false, Some(other)) =
-        (archive.file_names().any(|name| name.ends_with(".npy")), archive.file_names().next())
-    {
-        let seen =
-            format!("it is a zip archive without arrays of NumPy: unpack it first; it holds `{other}`");
-        return Err(Error::Unknown { path: path.to_owned(), seen });
+    if !archive.file_names().any(|name| name.ends_with(".npy")) && !archive.is_empty() {
+        return Err(Error::Unknown { path: path.to_owned(), seen: foreign(&archive) });
     }
     for at in 0..archive.len() {
         let mut entry = archive.by_index(at).map_err(|e| damaged(e.to_string()))?;

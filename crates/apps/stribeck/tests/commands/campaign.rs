@@ -399,6 +399,7 @@ fn behaves_scripts_for_engines_name_every_part() {
     let desk = desk("campaign-emit", CAMPAIGN);
     for (engine, words) in [
         ("slurm", ["--array=1-8", "$SLURM_ARRAY_TASK_ID/8", "--cpus-per-task=1\n", "--threads 1\n"]),
+        ("pbs", ["#PBS -J 1-8\n", "$PBS_ARRAY_INDEX/8", "select=1:ncpus=1\n", "--threads 1\n"]),
         ("hq", ["--array=1-8", "$HQ_TASK_ID/8", "--cpus=1 ", "--threads 1'"]),
     ] {
         let output = desk.run(&["--emit", engine, "--shards=16"]);
@@ -409,12 +410,18 @@ fn behaves_scripts_for_engines_name_every_part() {
         assert!(!said(&output).contains("|| true"), "{}", said(&output));
         assert!(!desk.join("runs").exists());
     }
-    says(&desk.run("--emit=slurm"), &["##SBATCH --time="]);
+    says(&desk.run("--emit=slurm"), &["##SBATCH --time=", "up to 1 runs", "stribeck plan"]);
+    says(&desk.run("--emit=pbs --shards=4"), &["##PBS -l walltime=", "up to 2 runs"]);
+    // PBS refuses an array of one.
+    let alone = desk.run("--emit=pbs --shards=1");
+    says(&alone, &["--shard 1/1"]);
+    assert!(!said(&alone).contains("#PBS -J"), "{}", said(&alone));
     // Eight runs are eight parts by default, and parts get the flags of the command.
     let limits = ["--threads=4", "--jobs=2", "--memory-gb=1.5"];
     let told = |engine| desk.run(&[&["--emit", engine][..], &limits].concat());
     let to_program = "/8 --jobs 2 --threads 4 --memory-gb 1.5";
     says(&told("slurm"), &["--array=1-8", "--cpus-per-task=4", "--mem=1431M", to_program]);
+    says(&told("pbs"), &["-J 1-8", "select=1:ncpus=4:mem=1431mb", to_program]);
     says(&told("hq"), &["--array=1-8", "--cpus=4", to_program]);
     says(&desk.run("--emit=hq --jobs=2"), &["--jobs 2 --threads 2", "--cpus=2"]);
     says(&desk.run("--shards=3"), &["--emit"]);

@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::common::{QUICK, STRIBECK};
+use crate::common::{COARSE, Desk, QUICK, STRIBECK};
 use stribeck_testing::{Scratch, assert_has};
 
 /// The coarse bearing, from rest: long enough to be killed in the middle, short enough for a test.
@@ -56,6 +56,10 @@ fn wait_until_under_way(run: &Path) {
         assert!(began.elapsed() < PATIENCE, "the run does not come on");
         std::thread::sleep(Duration::from_millis(5));
     }
+}
+
+fn listed(desk: &Desk) -> serde_json::Value {
+    serde_json::from_slice(&desk.succeeds("list . --json").stdout).expect("JSON")
 }
 
 /// What runs are compared by.
@@ -108,6 +112,81 @@ fn survives_kills_and_full_disks_without_loss() {
 
     let again = resume(&killed, "1");
     assert!(!again.status.success() && words(&again).contains("it is complete"), "{}", words(&again));
+}
+
+/// A kill between the last step and the end of the report left a run that `--resume` called complete and whose page no
+/// command named. The report is begun anew: figures cut off, hidden halves of files, no `summary.json`.
+#[test]
+fn survives_a_kill_while_the_report_is_written() {
+    let desk = Desk::new("reporting");
+    let run = [&["simulate", QUICK, "--out=A"][..], &COARSE, &["--set=solver.duration_ms=0.3"]].concat();
+    desk.succeeds(&run);
+    let stage = || listed(&desk)[0]["stage"].as_str().map(str::to_owned);
+    assert_eq!(stage().as_deref(), Some("reported"));
+    desk.says("list .", &["reported, 0.3 ms"]);
+    let report = ["A/summary.json", "A/report.html"].map(|name| (name, desk.text(name)));
+    let figure = fs::read_dir(desk.join("A/figures")).expect("figures").flatten().map(|entry| entry.path());
+    let figure = figure.min().expect("a figure");
+    let drawn = fs::read(&figure).expect("readable");
+
+    let break_off = || {
+        fs::remove_file(desk.join("A/summary.json")).expect("it is there");
+        fs::write(&figure, &drawn[..drawn.len() / 2]).expect("writable");
+        for half in ["A/.report.html.1-0.part", "A/figures/.energy.svg.1-0.part"] {
+            fs::write(desk.join(half), "half").expect("writable");
+        }
+        assert_eq!(stage().as_deref(), Some("complete"));
+        desk.says("list .", &["complete, 0.3 ms", "next: ", " report A"]);
+    };
+    let healed = || {
+        assert_eq!(stage().as_deref(), Some("reported"));
+        report.iter().for_each(|(name, text)| assert!(desk.text(name) == *text, "another {name}"));
+        assert!(fs::read(&figure).expect("readable") == drawn, "the figure is cut off");
+        for half in ["A/.report.html.1-0.part", "A/figures/.energy.svg.1-0.part"] {
+            assert!(!desk.join(half).exists(), "{half} is left");
+        }
+    };
+    break_off();
+    desk.refuses("simulate --resume A --no-report", &["it is complete", "stribeck report"]);
+    desk.says("simulate --resume A", &["complete: ", "report: A/report.html"]);
+    healed();
+    break_off();
+    desk.says("report A", &["report: A/report.html"]);
+    healed();
+    desk.refuses("simulate --resume A", &["it is complete", "solver.duration_ms"]);
+
+    // Made longer, it has no report of its length until that is written.
+    desk.succeeds("simulate --resume A --no-report --set solver.duration_ms=0.4");
+    assert_eq!(stage().as_deref(), Some("complete"));
+}
+
+/// A kill before the complete run was moved to the place of an earlier one left both, for ever.
+#[test]
+fn survives_a_kill_before_a_run_takes_the_place_of_another() {
+    let desk = Desk::new("replacing");
+    let run = [&["simulate", QUICK, "--no-report", "--set=solver.duration_ms=0.3"][..], &COARSE].concat();
+    desk.succeeds(&[&run[..], &["--out=A"]].concat());
+    desk.succeeds(&[&run[..], &["--out=A.new", "--set=operation.load_n=1000"]].concat());
+    fs::write(desk.join("A.new/.replaces"), "A").expect("writable");
+    desk.says("list .", &["next: ", " simulate --resume A.new"]);
+    desk.succeeds("simulate --resume A.new --no-report");
+    assert!(!desk.join("A.new").exists());
+    assert!(desk.text("A/scene.ron").contains("load_n: 1000"), "A is still the earlier run");
+}
+
+/// A run that was killed before its first checkpoint is planned, and says what begins it.
+#[test]
+fn survives_a_kill_before_the_first_step() {
+    let desk = Desk::new("planned");
+    fs::create_dir(desk.join("A")).expect("writable");
+    fs::copy(QUICK, desk.join("A/scene.ron")).expect("writable");
+    fs::write(desk.join("A/.lock"), "1\n").expect("writable");
+    for command in ["report A", "simulate --resume A"] {
+        desk.refuses(command, &["no `run.json`", "stribeck simulate A/scene.ron --out A"]);
+    }
+    let begin =
+        [&["simulate", "A/scene.ron", "--out=A", "--set=solver.duration_ms=0.3"][..], &COARSE].concat();
+    desk.succeeds(&begin);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_store::{
-    run_dir::RunDir,
+    run_dir::{RunDir, Stage},
     run_info::{RunInfo, Status, Topic},
 };
 
@@ -91,6 +91,12 @@ fn may_go_on(dir: &RunDir, scene: &ResolvedScene) -> Result<Option<String>, Erro
     let reason = match info.status {
         Status::Diverged => {
             "it diverged, and the same steps would diverge again. `run.json` says why and what to change"
+        }
+        Status::Complete
+            if info.scene_hash == scene.written.hash() && Stage::of(dir.path()) == Stage::Complete =>
+        {
+            "it is complete, and only its report is missing: `stribeck report` writes it. A longer run: \
+             `--resume` with `--set solver.duration_ms=…`"
         }
         Status::Complete if info.scene_hash == scene.written.hash() => {
             "it is complete. A longer one: `--resume` with `--set solver.duration_ms=…`"

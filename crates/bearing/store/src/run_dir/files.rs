@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::de::DeserializeOwned;
 
-use super::{DERIVED, FIGURES, FILES, FOLDERS, LOCK, PARTIAL};
+use super::{DERIVED, FIGURES, FILES, FOLDERS, LOCK, PARTIAL, REPORT, SUMMARY};
 use crate::error::Error;
 use crate::run_info::RunInfo;
 use stribeck_scene::ensemble::{folder_name, number_of};
@@ -22,12 +22,25 @@ const MAX_INFO_BYTES: u64 = 1 << 24;
 ///
 /// [`Error::Io`] when the disk refuses; the earlier file, if any, is then still there.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    // The name must not reach the disk before the content.
+    replace(path, bytes, File::sync_data)
+}
+
+/// The same without waiting for the disk: whole after a kill, not after a loss of power.
+///
+/// # Errors
+///
+/// As [`write_atomic`].
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    replace(path, bytes, |_| Ok(()))
+}
+
+fn replace(path: &Path, bytes: &[u8], settle: fn(&File) -> std::io::Result<()>) -> Result<(), Error> {
     const KEPT: &str =
         "What was there before is still there; check the free space and the permissions of the folder";
     let failed = |e| cannot("write", path, KEPT, e);
     let (partial, mut file) = partial(path).map_err(failed)?;
-    // The name must not reach the disk before the content.
-    let written = file.write_all(bytes).and_then(|()| file.sync_data());
+    let written = file.write_all(bytes).and_then(|()| settle(&file));
     drop(file);
     written.and_then(|()| std::fs::rename(&partial, path)).map_err(|e| {
         std::fs::remove_file(&partial).ok();
@@ -54,19 +67,29 @@ fn partial(path: &Path) -> std::io::Result<(PathBuf, File)> {
 
 /// Removes what killed processes have left of the files of a run or its report in `folder`.
 pub(super) fn remove_partial(folder: &Path) -> Result<(), Error> {
+    remove_partial_of(folder, |file| FILES.contains(&file))?;
+    remove_partial_report(folder)
+}
+
+/// The same of the files of a report; the run may still be writing its own.
+pub(super) fn remove_partial_report(folder: &Path) -> Result<(), Error> {
+    remove_partial_of(folder, |file| [REPORT, SUMMARY].contains(&file))?;
+    remove_partial_of(&folder.join(FIGURES), |_| true)
+}
+
+fn remove_partial_of(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<(), Error> {
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
-    for name in names.filter(|name| name.to_str().is_some_and(is_partial)) {
+    for name in names.filter(|name| name.to_str().and_then(target).is_some_and(&is_ours)) {
         remove(&folder.join(name))?;
     }
     Ok(())
 }
 
-/// Whether a name is one of [`partial`], for a file of a run or its report.
-fn is_partial(name: &str) -> bool {
-    let own = name.strip_prefix('.').and_then(|name| name.strip_suffix(PARTIAL));
-    own.and_then(|own| own.rsplit_once('.')).is_some_and(|(file, writer)| {
-        FILES.contains(&file) && writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-')
-    })
+/// The file that one of [`partial`] was to become, by its name.
+fn target(name: &str) -> Option<&str> {
+    let own = name.strip_prefix('.')?.strip_suffix(PARTIAL)?;
+    let (file, writer) = own.rsplit_once('.')?;
+    writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-').then_some(file)
 }
 
 pub(super) fn cannot(action: &'static str, path: &Path, kept: &str, source: std::io::Error) -> Error {

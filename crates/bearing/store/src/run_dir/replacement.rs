@@ -31,7 +31,8 @@ pub(super) fn marked(new: &Path) -> Option<PathBuf> {
     let name = std::fs::read_to_string(new.join(MARK)).ok()?;
     // A name and no path: it stays beside the run, wherever both were moved.
     let plain = Path::new(&name).components().count() == 1 && !name.starts_with('.');
-    plain.then(|| new.with_file_name(name))
+    // A kill may have left the mark in the folder that has taken the place.
+    plain.then(|| new.with_file_name(name)).filter(|old| old != new)
 }
 
 /// Puts the complete run in `new` at `old`. Files that the owner added to the old folder are moved along.

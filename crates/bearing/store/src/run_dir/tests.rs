@@ -166,8 +166,8 @@ fn behaves_of_a_run_its_signals_stay() {
         }
         std::fs::create_dir_all(dir.frames()).expect("writable");
         let others = [dir.mesh(), dir.checkpoint(), dir.summary(), dir.frames().join("000000.npy")];
-        others.iter().for_each(|file| std::fs::write(file, "bytes").expect("writable"));
         dir.write_info(&info(Status::Complete)).expect("writable");
+        others.iter().for_each(|file| std::fs::write(file, "bytes").expect("writable"));
         for _ in 0..2 {
             dir.keep_only(keep).expect("writable");
             assert!(dir.keeps_only(keep));

@@ -361,6 +361,28 @@ fn issue_files_beside_sound_ones_are_named() {
     assert_refused(try_open(&desk, "a.flac", &tag), "FLAC");
 }
 
+/// A workbook was called a zip archive to be unpacked, which leads to XML without samples.
+#[test]
+fn issue_a_workbook_is_named_with_the_way_to_csv() {
+    let desk = Scratch::create("second-workbook");
+    let archive = |names: &[&str]| {
+        let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        for name in names {
+            zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+        }
+        zip.finish().unwrap().into_inner()
+    };
+    let excel = archive(&["[Content_Types].xml", "xl/workbook.xml", "xl/worksheets/sheet1.xml"]);
+    // Also under the name of a table.
+    for name in ["a.xlsx", "a.csv"] {
+        let why = try_open(&desk, name, &excel).unwrap_err().to_string();
+        assert!(why.contains("workbook of Excel") && why.contains("as CSV"), "{why}");
+    }
+    let office = archive(&["mimetype", "content.xml"]);
+    assert_refused(try_open(&desk, "a.ods", &office), "LibreOffice");
+    assert_refused(try_open(&desk, "a.zip", &archive(&["a.csv"])), "unpack it first; it holds `a.csv`");
+}
+
 /// The head of a `.npy` array of `count` doubles.
 fn npy_head(count: u64) -> Vec<u8> {
     let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({count},), }}");
