@@ -136,7 +136,7 @@ fn survives_a_kill_while_the_report_is_written() {
             fs::write(desk.join(half), "half").expect("writable");
         }
         assert_eq!(stage().as_deref(), Some("complete"));
-        desk.says("list .", &["complete, 0.3 ms", "next: ", " report A"]);
+        desk.says("list .", &["complete, 0.3 ms", "next: ", " report ./A"]);
     };
     let healed = || {
         assert_eq!(stage().as_deref(), Some("reported"));
@@ -168,7 +168,7 @@ fn survives_a_kill_before_a_run_takes_the_place_of_another() {
     desk.succeeds(&[&run[..], &["--out=A"]].concat());
     desk.succeeds(&[&run[..], &["--out=A.new", "--set=operation.load_n=1000"]].concat());
     fs::write(desk.join("A.new/.replaces"), "A").expect("writable");
-    desk.says("list .", &["next: ", " simulate --resume A.new"]);
+    desk.says("list .", &["next: ", " simulate --resume ./A.new"]);
     desk.succeeds("simulate --resume A.new --no-report");
     assert!(!desk.join("A.new").exists());
     assert!(desk.text("A/scene.ron").contains("load_n: 1000"), "A is still the earlier run");
