@@ -169,13 +169,14 @@ impl ResolvedScene {
         self.overload().into_iter().chain(of_spalls.flatten()).chain(self.slow_samples()).collect()
     }
 
-    /// A spall that no loaded element reaches, of an outer ring and under a load that do not turn.
+    /// A spall that no loaded element reaches, of an outer ring that does not turn.
     fn idle_spall(&self, spall: &DefectScene) -> Option<String> {
         let operation = &self.written.operation;
-        let turns = operation.outer_speed_rpm != 0.0
-            || operation.outer_speed_profile.is_some()
-            || operation.rotating_load.is_some();
-        if spall.ring != DefectRing::Outer || turns {
+        let turns = operation.outer_speed_rpm != 0.0 || operation.outer_speed_profile.is_some();
+        // By how much a load that turns tilts the one that stands.
+        let rotating_n = operation.rotating_load.as_ref().map_or(0.0, |load| load.force_n.abs());
+        let tilt_deg = libm::asin(rotating_n / operation.load_n).to_degrees();
+        if spall.ring != DefectRing::Outer || turns || tilt_deg.is_nan() {
             return None;
         }
         // Of an angle from the middle of the load zone, and how far from it elements carry: one beside them may
@@ -184,8 +185,9 @@ impl ResolvedScene {
         let shared = self.static_load().ok()?;
         let angles = self.written.angles_to_load_deg();
         let loaded = angles.iter().zip(&shared.roller_n).filter(|(_, force)| **force > 0.0);
-        let reach_deg =
-            loaded.map(|(angle, _)| off_deg(angle - 90.0)).fold(0.0, f64::max) + 360.0 / self.rollers as f64;
+        let reach_deg = loaded.map(|(angle, _)| off_deg(angle - 90.0)).fold(0.0, f64::max)
+            + tilt_deg
+            + 360.0 / self.rollers as f64;
         let half_deg = (0.5e-3 * spall.length_mm / self.outer_race_radius).to_degrees();
         let zone_deg = self.written.load_zone_deg();
         (off_deg(spall.angle_deg - zone_deg) - half_deg > reach_deg).then(|| {

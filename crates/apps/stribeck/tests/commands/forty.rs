@@ -1,4 +1,4 @@
-//! Forty-eight things that somebody new types in the first hour, in their order and as a shell takes them: each does
+//! Sixty things that somebody new types in the first hour, in their order and as a shell takes them: each does
 //! what was meant, or is answered with the line that does.
 
 use std::fs;
@@ -25,7 +25,7 @@ use Then::{Answers, Says, Works};
 const CATALOGUE_WORDS: &str = "(bearing: (bore_mm: 8, outer_diameter_mm: 22, width_mm: 7, balls: 7, \
     ball_diameter: 3.969, pitch_diameter_mm: 15), operation: (load_n: 100, rpm: 1500))";
 
-const FORTY: [(&str, Then); 47] = [
+const FORTY: [(&str, Then); 59] = [
     ("stribeck --version", Works("stribeck 0.")),
     ("stribeck help sweep", Works("<FIELD=V1,V2,…>")),
     ("stribeck demo --help", Works("ten seconds")),
@@ -43,6 +43,9 @@ const FORTY: [(&str, Then); 47] = [
     ("stribeck plan catalogue.ron", Answers("did you mean `bearing.outside_mm` [mm]?")),
     ("stribeck plan catalogue.ron", Answers("did you mean `operation.speed_rpm` [rpm]?")),
     ("stribeck plan mine.ron --no-trial", Works("BPFO 89.62 Hz")),
+    ("stribeck bearings --search ball", Answers("stribeck bearings 62")),
+    ("stribeck fields operation.load_n", Works("operation.load_n = ")),
+    ("stribeck fields no_such_field", Answers("lists all")),
     // Its run.
     ("stribeck simulate mine.ron", Works("report: runs/mine/report.html")),
     ("stribeck run mine.ron", Works("which is kept")),
@@ -52,6 +55,8 @@ const FORTY: [(&str, Then); 47] = [
     ("stribeck simulate mine.ron --rpm 1800", Answers("--set operation.speed_rpm=…")),
     ("stribeck simulate mine.ron --set load_kn=2", Answers("operation.load_n")),
     ("stribeck simulate mine.ron --set operation.load_n=900 --out runs/other --no-report", Works("complete")),
+    ("stribeck simulate mine.ron --name second", Works("runs/second/report.html")),
+    ("stribeck version", Answers("try: stribeck --version")),
     ("stribeck list", Works("other")),
     ("stribeck list --json", Works("\"name\": \"mine\"")),
     ("stribeck ls", Works("other")),
@@ -68,7 +73,13 @@ const FORTY: [(&str, Then); 47] = [
     ("stribeck export mine --to csv", Works("runs/mine/trace.csv")),
     ("stribeck export mine csv", Answers("try: stribeck export RUN --to FORMAT")),
     ("stribeck export mine --to wav", Works("runs/mine/sound.wav")),
+    ("stribeck export mine --to pvd", Answers("output.frames=()")),
+    ("stribeck export record.csv --to npz", Works("record.npz")),
+    ("stribeck export record.csv --to pvd", Answers("is a record")),
+    ("stribeck list --max-memory 1GB", Answers("unexpected argument")),
     // Records.
+    ("stribeck analyse record.csv --list-channels", Answers("--channel ?, which lists them")),
+    ("stribeck analyse record.csv --channel '?'", Answers("`acc_g` (60000 samples)")),
     ("stribeck analyse record.csv --bearing 6205 --speed-rpm 1200", Works("a defect of the outer raceway")),
     (
         "stribeck analyze record.mat --bearing SKF6205-2RS --speed-rpm 1200",
@@ -80,6 +91,10 @@ const FORTY: [(&str, Then); 47] = [
     // The end of the hour.
     ("stribeck resume mine", Answers("try: stribeck simulate --resume RUN")),
     ("stribeck simulate --resume mine", Answers("--set solver.duration_ms=")),
+    (
+        "stribeck simulate --resume mine --no-report --set solver.duration_ms=70 && ! ls runs/mine/summary.json",
+        Works("No such file"),
+    ),
     ("stribeck delete other --force", Answers("--yes of rm")),
     ("stribeck rm other --yes", Works("removed 1 folder")),
 ];

@@ -105,11 +105,11 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
     all.extend([
         number("3", TONE[0], "Hz", TONE_HZ, 3.0, 10.0, sensor.tone_hz),
         number("3", TONE[1], "kHz", 23.0, 0.5, 0.1, khz(sensor.fifth_hz)),
-        level("6", "Between the impulses, notched, peak", FILTERED_G, sensor.between_filtered_g),
-        number("7", TONE[2], "dB", 25.0, 0.5, 2.0, sensor.notch_db),
+        level("6", TONE[2], FILTERED_G, sensor.between_filtered_g),
+        number("7", TONE[3], "dB", 25.0, 0.5, 2.0, sensor.notch_db),
     ]);
     let of_filter = summary.notch.as_ref().and_then(|notch| notch.paper_4545_db);
-    all.push(number("7", "Taken at 4545 Hz by the paper\u{2019}s notch", "dB", 4.0, 0.5, 0.0, of_filter));
+    all.push(number("7", TONE[4], "dB", 4.0, 0.5, 0.0, of_filter));
     let seen = |has: fn(&crate::summary::Event) -> bool| {
         (!events.is_empty()).then(|| events.iter().filter(|event| has(event)).count() as f64)
     };
@@ -140,8 +140,14 @@ pub fn beside(starts: &[Vec<Shown>]) -> Vec<Beside> {
     first.iter().enumerate().map(one).collect()
 }
 
-/// The tone of facets, and what is measured of it.
-const TONE: [&str; 3] = ["Fundamental tone", "Its fifth harmonic", "Taken from the tone by the notch"];
+/// The tone of facets, its fundamental first, and what a notch there takes away.
+const TONE: [&str; 5] = [
+    "Fundamental tone",
+    "Its fifth harmonic",
+    "Between the impulses, notched, peak",
+    "Taken from the tone by the notch",
+    "Taken at 4545 Hz by the paper\u{2019}s notch",
+];
 
 impl Shown {
     /// Whether it is a number of the tone that facets make, which contact on arcs does not have.

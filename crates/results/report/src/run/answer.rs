@@ -345,8 +345,8 @@ fn physics(summary: &Summary) -> String {
         let (name, moved_hz) = (&first.name, first.from_motion_hz.unwrap_or(first.predicted_hz));
         // As the sentence above has it, which reads the envelope.
         let families = summary.diagnosis.iter().flat_map(|diagnosis| &diagnosis.families);
-        let told = families.filter(|f| f.claimed && f.present && f.name.name() == *name);
-        let hz = told.filter_map(|f| f.measured_hz).next().unwrap_or(moved_hz);
+        let mut told = families.filter(|f| f.claimed && f.present && f.name.name() == *name);
+        let hz = told.find_map(|f| f.measured_hz).unwrap_or(moved_hz);
         let periods = 1e-3 * summary.run.simulated_ms * hz;
         if hz == 0.0 {
             String::new()

@@ -76,7 +76,9 @@ impl<'a> PaperCase<'a> {
         let softness = if scene.contact.formula == ContactFormula::Hertz { "" } else { SOFT };
         let beside = paper::beside(&numbers);
         let faceted = scene.contact.surface == ContactSurface::Facet;
-        let cured = !faceted && beside.iter().any(|b| b.shown.is_of_tone() && b.ours.is_none());
+        // The fundamental is the first of its numbers.
+        let tone = beside.iter().find(|b| b.shown.is_of_tone());
+        let cured = !faceted && tone.is_some_and(|tone| tone.ours.is_none());
         Some(Self { starts, drawn, number, levels, sensor, beside, softness, short, cured, faceted })
     }
 

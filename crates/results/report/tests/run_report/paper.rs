@@ -1,7 +1,13 @@
 //! The paper's numbers and figures, beside those of the run.
 
-use crate::synthetic::{TONE_G, TONE_HZ};
-use crate::{close, read, whole};
+use stribeck_analysis::comparison::{Comparison, Side};
+use stribeck_report as report;
+use stribeck_scene::scene::{ContactSurface, Scene};
+use stribeck_store::run_info::Status;
+use stribeck_testing::Scratch;
+
+use crate::synthetic::{self, TONE_G, TONE_HZ};
+use crate::{SAMPLES, close, read, whole};
 
 #[test]
 fn behaves_every_number_of_the_paper_has_a_row_without_a_blank() {
@@ -99,4 +105,31 @@ fn planted_the_paper_is_answered_figure_by_figure() {
     let figures = ["paper-2", "paper-3", "beat", "beat-zoom", "paper-6", "paper-7a", "paper-7b", "paper-8a"];
     let at = figures.map(|id| page.find(&format!("<figure id=\"{id}\"")).expect("a figure"));
     assert!(at.is_sorted(), "{at:?}");
+}
+
+/// The scene without the tone was told as a failure, 6 of 14 numbers met, and a comparison of both did not name the
+/// line that comes and goes.
+#[test]
+fn issue_a_tone_that_arcs_take_away_is_told_as_that() {
+    let folder = Scratch::create("cured");
+    let mut arcs = Scene::default();
+    let page = |name: &str, scene: &Scene| {
+        let run = folder.join(name);
+        synthetic::write_scene(&run, scene, Status::Complete, SAMPLES, 1.0);
+        report::write(&run).expect("a report");
+        (read(&run, "report.html"), Side::of_folder(name, &run, None).expect("a run"))
+    };
+    let (of_facets, facets) = page("facets", &arcs);
+    assert!(of_facets.contains("singh2014_smooth.ron") && !of_facets.contains("gone with the facets"));
+    arcs.contact.surface = ContactSurface::Arc;
+    let (of_arcs, arcs) = page("arcs", &arcs);
+    assert!(
+        of_arcs.contains("is gone, as contact on arcs predicts") && of_arcs.contains("gone with the facets")
+    );
+    assert!(!of_arcs.contains("is not found"), "a number of the tone is told as missing");
+    let comparison = Comparison::of(vec![facets, arcs]).expect("two runs");
+    let words = report::comparison_in_words(&comparison);
+    assert!(words[0].contains("facets has it at 46") && words[0].ends_with("arcs has none."), "{words:?}");
+    let line = comparison.mesh_lines[0].expect("a line");
+    close(Some(line.hz), TONE_HZ, 2.0, "the line of the mesh");
 }

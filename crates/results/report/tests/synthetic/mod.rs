@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use stribeck_scene::ensemble::start;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{ContactSurface, Scene};
 use stribeck_store::run_dir::Ensemble;
 use stribeck_store::run_dir::RunDir;
 use stribeck_store::run_info::{EnergyInfo, RunInfo, Status};
@@ -154,11 +154,13 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
     let mut writer = TraceWriter::create(dir.trace(), &names).expect("a writable folder");
     let mut noise = Noise::new(3);
     let crossings = crossings(scene);
+    // Contact on arcs has no corners, and so no tone.
+    let tone = if scene.contact.surface == ContactSurface::Facet { TONE_G } else { 0.0 };
     for n in 0..samples {
         let t = n as f64 * INTERVAL_S;
         let mut row = vec![t];
         for (number, _) in scene.output.sensors.iter().enumerate() {
-            let ay = gain * G * acceleration_g(t, number, &crossings, &mut noise);
+            let ay = gain * G * acceleration_g(t, number, tone, &crossings, &mut noise);
             let instant = ay + 2000.0 * G * noise.uniform();
             row.extend([0.3 * ay, ay, 0.3 * instant, instant]);
         }
@@ -179,9 +181,9 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
 }
 
 /// Tone, impulses at the exits and noise.
-fn acceleration_g(t: f64, sensor: usize, crossings: &[Crossing], noise: &mut Noise) -> f64 {
+fn acceleration_g(t: f64, sensor: usize, tone_g: f64, crossings: &[Crossing], noise: &mut Noise) -> f64 {
     let strength = [1.0, 1.4, 0.7, 2.0][sensor % 4];
-    let tone = TONE_G * (TAU * TONE_HZ * t).sin() + 0.2 * TONE_G * (6.0 * TAU * TONE_HZ * t).sin();
+    let tone = tone_g * (TAU * TONE_HZ * t).sin() + 0.2 * tone_g * (6.0 * TAU * TONE_HZ * t).sin();
     let impulse: f64 = crossings
         .iter()
         .map(|c| t - (c.exit_s - EXIT_LEAD_S))
