@@ -313,7 +313,7 @@
   // Each figure as a file: its drawing as it is, and the same in pixels, twice as fine as on the page.
   const saving = (figure) => {
     const svg = figure.querySelector(".still svg, .drawing svg");
-    const image = figure.querySelector(".drawing img"), canvas = figure.querySelector("canvas.bearing");
+    const canvas = figure.querySelector("canvas.bearing");
     const text = () => new XMLSerializer().serializeToString(svg);
     const address = () => "data:image/svg+xml;charset=utf-8," + encodeURIComponent(text());
     const forms = [];
@@ -330,9 +330,6 @@
         };
         picture.src = address();
       }]);
-    } else if (image) {
-      const form = image.src.slice(11, 14).toUpperCase();
-      forms.push([form, () => save(`${figure.id}.${form.toLowerCase()}`, image.src)]);
     } else if (canvas) {
       forms.push(["PNG", () => save(figure.id + ".png", canvas.toDataURL("image/png"))]);
     }

@@ -108,9 +108,7 @@ fn heat(course: &Course, range_db: f64, (id, title): (&str, &str), x: &Span<'_>,
     draw_cells(&mut sheet, &shades);
     draw_axes(&mut sheet, x, y);
     draw_key(&mut sheet, &shades);
-    let mut picture = Picture::new(id, title, sheet);
-    picture.dense = true;
-    picture
+    Picture::new(id, title, sheet)
 }
 
 /// Rows of a waterfall at most.
@@ -182,7 +180,6 @@ pub(super) fn waterfall(course: &Course, unit: &str, speeds: Option<&[f64]>) -> 
         course.grid_hz,
         if speeds.is_some() { "slowest" } else { "first" }
     );
-    picture.dense = true;
     Some(picture)
 }
 

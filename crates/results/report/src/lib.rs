@@ -24,7 +24,7 @@
 //! | a series of measured records | [`write_series`] | `report.html`, `findings.json` |
 //! | several channels of one machine | [`write_joint`] | `joint.html`, `joint.json` |
 //!
-//! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG, PNG). The page of a
+//! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG). The page of a
 //! run is the folder `run`: a file or folder a section, in the order of the page. The sentence under its title
 //! is in `run/lead.rs`, the paragraphs after it in `run/answer.rs`. It is a crate because a program that needs
 //! the numbers alone links no plotting library.

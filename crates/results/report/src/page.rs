@@ -33,15 +33,11 @@ pub(crate) fn write_figures(figures: &[&Item], folder: &Path, words: ElementWord
     })
 }
 
-/// A figure as SVG and as PNG.
+/// A figure as SVG.
 fn write_figure(figure: &Item, folder: &Path, words: ElementWords) -> Result<(), Error> {
-    let write = |form: &str, bytes: &[u8]| {
-        let path = folder.join(format!("{}.{form}", figure.id()));
-        fs::write(&path, bytes).map_err(|why| Error::Write { path, why })
-    };
+    let path = folder.join(format!("{}.svg", figure.id()));
     let svg = words.markup(figure.to_svg()?);
-    write("svg", svg.as_bytes())?;
-    write("png", &plot::png(figure.id(), &svg)?)
+    fs::write(&path, svg).map_err(|why| Error::Write { path, why })
 }
 
 /// `summary.json` with a final line end.

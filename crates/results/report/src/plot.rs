@@ -17,14 +17,12 @@ mod decimate;
 mod interactive;
 mod labels;
 mod picture;
-mod raster;
 mod scale;
 mod shade;
 mod svg;
 
 pub use interactive::script;
 pub use picture::{Anchor, Picture, Sheet};
-pub use raster::png;
 pub use scale::{Scale, ticks};
 use serde::Serialize;
 pub use shade::shade_rgb;

@@ -37,8 +37,8 @@ addEventListener("load", () => setTimeout(() => {
       for (let i = 0; i < pixels.length; i += 4) if (pixels[i + 3]) colours.add(pixels[i] << 16 | pixels[i + 1] << 8 | pixels[i + 2]);
       if (colours.size < 3) undrawn.push(figure.id + ": " + colours.size + " colours");
     } else {
-      const image = figure.querySelector("img"), drawing = figure.querySelector("svg");
-      if (image ? !(image.complete && image.naturalWidth > 0) : !(drawing && drawing.childElementCount > 2)) undrawn.push(figure.id + ": empty");
+      const drawing = figure.querySelector("svg");
+      if (!(drawing && drawing.childElementCount > 2)) undrawn.push(figure.id + ": empty");
     }
   }
   const count = document.querySelectorAll("figure").length;

@@ -107,7 +107,7 @@ fn ring_down(d: &mut Dynamics, shape: &[[f64; 2]], guess: f64, cycles: f64) -> [
 const DAMPED: [usize; 4] = [0, 1, 2, 3];
 
 /// A branch that damps the motion of a small model in a few thousand steps.
-const BRANCH: Branch = Branch { stiffness: 0.1, relaxation_time: 5e-6 };
+const BRANCH: Branch = Branch { stiffness: 0.1, relaxation_time: 2e-6 };
 
 #[test]
 fn conserves_the_ledger_of_structural_damping() {

@@ -40,7 +40,7 @@ impl Item {
     pub(crate) fn to_html(&self) -> Result<Markup, Error> {
         match self {
             Self::Chart(figure) => figure.to_html(),
-            Self::Picture(picture) => picture.to_html(),
+            Self::Picture(picture) => Ok(picture.to_html()),
         }
     }
 
@@ -64,7 +64,7 @@ impl Item {
     pub(crate) fn with_note(&self, note: String) -> Result<Markup, Error> {
         match self {
             Self::Chart(figure) => figure.clone().note(note).to_html(),
-            Self::Picture(picture) => Picture { note, ..picture.clone() }.to_html(),
+            Self::Picture(picture) => Ok(Picture { note, ..picture.clone() }.to_html()),
         }
     }
 }

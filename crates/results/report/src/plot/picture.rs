@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::{Colour, Tab, base64, raster};
-use crate::Error;
+use super::{Colour, Tab};
 
 /// One picture with its caption.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +19,6 @@ pub struct Picture {
     pub note: String,
     /// The drawing.
     pub sheet: Sheet,
-    /// True for drawings with too many lines for the page, which holds pixels instead.
-    pub dense: bool,
     /// Where it is one of several that stand behind tabs.
     pub tab: Option<Tab>,
 }
@@ -63,11 +60,16 @@ impl Sheet {
         let _ = write!(self.body, "<path d=\"{data}\" style=\"{paint}\"/>");
     }
 
-    /// Many separate lines in one element.
+    /// Many separate lines in one element, each end relative to the one before it and to a tenth of a pixel: a
+    /// mesh has hundreds of thousands.
     pub fn lines(&mut self, lines: impl IntoIterator<Item = [[f64; 2]; 2]>, paint: &str) {
         let _ = write!(self.body, "<path d=\"");
-        for line in lines {
-            self.points(&line);
+        let mut pen = [0; 2];
+        for point in lines.into_iter().flat_map(|[from, to]| [('m', from), ('l', to)]) {
+            let (command, at) = (point.0, point.1.map(|x| (10.0 * x).round() as i64));
+            let [dx, dy] = [0, 1].map(|axis| (at[axis] - pen[axis]) as f64 / 10.0);
+            let _ = write!(self.body, "{command}{dx} {dy}");
+            pen = at;
         }
         let _ = write!(self.body, "\" style=\"{paint}\"/>");
     }
@@ -141,7 +143,6 @@ impl Picture {
             caption: String::new(),
             note: String::new(),
             sheet,
-            dense: false,
             tab: None,
         }
     }
@@ -153,22 +154,15 @@ impl Picture {
     }
 
     /// The picture for the page: drawing, caption and note.
-    pub fn to_html(&self) -> Result<Markup, Error> {
-        let svg = self.sheet.to_svg();
-        let still = if self.dense {
-            let data = base64::bytes(&raster::scaled(&self.id, &svg, 1.0)?);
-            html! { img src={ "data:image/png;base64," (data) } alt=(self.title); }
-        } else {
-            html! { (PreEscaped(svg)) }
-        };
-        Ok(html! {
+    pub fn to_html(&self) -> Markup {
+        html! {
             figure id=(self.id) class="picture" {
                 h3 { (self.title) }
                 p class="caption" { (self.caption) }
-                div class="drawing" { (still) }
+                div class="drawing" { (PreEscaped(self.sheet.to_svg())) }
                 @if !self.note.is_empty() { p class="note" { (self.note) } }
             }
-        })
+        }
     }
 }
 

@@ -88,7 +88,6 @@ pub(super) fn whole(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
     }
     scale_bar(&mut sheet, [20.0, view.height - 20.0], 0.02, view.scale, "20 mm");
     let mut picture = Picture::new("mesh", "The mesh", sheet);
-    picture.dense = true;
     picture.caption = format!(
         "{}uter ring, {} rollers, cage and inner ring: {} elements.",
         holds.map_or("O".to_owned(), |name| format!("{}{}, o", name[..1].to_uppercase(), &name[1..])),
