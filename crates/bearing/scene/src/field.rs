@@ -11,7 +11,6 @@
 //! }
 //! ```
 
-pub(crate) mod foreign;
 pub(crate) mod range;
 pub mod tree;
 pub mod value;

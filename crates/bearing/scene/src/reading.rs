@@ -12,7 +12,6 @@ use std::ops::Range;
 
 use stribeck_theory::catalogue::CatalogueBearing;
 
-use crate::field::foreign;
 use crate::field::wording::{list, shown};
 use crate::fields::tree::{Broken, Content, Node, Source, Stop, join};
 use crate::fields::value::Value;
@@ -257,11 +256,6 @@ fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)
 pub(crate) fn broken(broken: Broken, sources: &Sources) -> Problem {
     let (source, text) = (Source::File, sources.text.as_str());
     let noun = sources.kind.noun.trim_start_matches("a ").trim_start_matches("an ");
-    if let Some(habit) = foreign::other_format(text, sources.kind.noun) {
-        let mut problem = Problem::new(habit.message, sources.place_at(source, habit.range));
-        problem.suggestion = habit.suggestion;
-        return problem;
-    }
     let Broken { field, range, kind } = broken;
     let mut problem = Problem::new("", sources.place_at(source, range.clone()));
     let cannot = format!("the {noun} cannot be read");
@@ -277,14 +271,6 @@ pub(crate) fn broken(broken: Broken, sources: &Sources) -> Problem {
         }
         Stop::NoValue => (format!("{cannot}: a value is expected here"), hint(text, range.start)),
         Stop::Expected(what) => (format!("{cannot}: {what} is expected here"), hint(text, range.start)),
-        Stop::DecimalComma => {
-            let written = &text[range];
-            problem.message = format!("`{field}` is `{written}`, with a decimal comma");
-            problem.field.clone_from(&field);
-            problem.allowed = spot(&field, None).map(Spot::allowed).unwrap_or_default();
-            problem.propose(&foreign::with_point(written), foreign::comma_note(written));
-            return problem;
-        }
     };
     (problem.message, problem.field) = (message, field);
     suggestion.clone_into(&mut problem.suggestion);
@@ -306,6 +292,8 @@ fn hint(text: &str, at: usize) -> &'static str {
         "a text stands in double quotes"
     } else if rest.starts_with('#') {
         "`//` begins a comment"
+    } else if before.ends_with(',') && rest.starts_with(|c: char| c.is_ascii_digit()) {
+        "a number has a decimal point"
     } else {
         "look for a missing comma, bracket or quote near the mark"
     }

@@ -5,7 +5,6 @@
 
 use std::ops::Range;
 
-use super::foreign;
 use super::{Field, Group, Shape};
 
 /// Deeper nesting than this is no scene.
@@ -298,8 +297,6 @@ pub enum Stop {
     NoValue,
     /// It stops between values, where this is expected.
     Expected(&'static str),
-    /// A number has a decimal comma.
-    DecimalComma,
     /// It is nested too deeply.
     Deep,
 }
@@ -518,13 +515,7 @@ impl<'a> Parser<'a> {
                 let field = join(path, &key.name);
                 let value = self.value(&field, depth + 1)?;
                 fields.push((key, value));
-            } else if let Some((key, last)) = fields.last() {
-                let length = foreign::comma_number(&self.text[last.span.start..]).unwrap_or(0);
-                if start < last.span.start + length {
-                    let field = join(path, &key.name);
-                    let range = last.span.start..last.span.start + length;
-                    return Err(Broken { field, range, kind: Stop::DecimalComma });
-                }
+            } else if !fields.is_empty() {
                 return Err(self.broken(path, start, Stop::Expected("the name of a field")));
             } else {
                 let value = self.value(path, depth + 1)?;

@@ -6,7 +6,7 @@ use super::named;
 use crate::catalogue;
 use crate::field::tree::{self, Content, Key, Node, Source, Step, steps};
 use crate::field::wording::{list, shown};
-use crate::field::{Shape, foreign, wording};
+use crate::field::{Shape, wording};
 use crate::fields::{Spot, names_in, spot};
 use crate::reading::sources::{Sources, command_line, find};
 use crate::reading::{self, Place, Problem, SceneError, suggest};
@@ -216,11 +216,6 @@ fn incomplete(path: &str, value: &str, spot: Spot, place: Place) -> Problem {
     let mut problem = Problem { is_unreadable: true, ..Problem::new("", place) };
     path.clone_into(&mut problem.field);
     problem.allowed = spot.allowed();
-    if foreign::comma_number(value) == Some(value.len()) {
-        problem.message = format!("`{path}` is given `{}`, with a decimal comma", shown(value));
-        problem.propose(&foreign::with_point(value), foreign::comma_note(value));
-        return problem;
-    }
     problem.message = match value {
         "" => format!("`{path}` is given no value"),
         _ => format!("`{path}` is given `{}`, which is not one complete value", shown(value)),
