@@ -79,7 +79,12 @@ fn ours(error: &Error) -> Option<String> {
         ErrorKind::InvalidValue => said(ContextKind::InvalidValue)?,
         _ => return None,
     };
-    let found = OURS.iter().find(|(typed, _)| typed.contains(&wrong.replace('_', "-").as_str()));
+    let dashed = wrong.replace('_', "-");
+    // The flag of this command, but for its dashes.
+    if said(ContextKind::SuggestedArg).is_some_and(|flag| flag == dashed) {
+        return None;
+    }
+    let found = OURS.iter().find(|(typed, _)| typed.contains(&dashed.as_str()));
     let command = || match Path::new(&wrong).extension().and_then(OsStr::to_str) {
         _ if error.kind() != ErrorKind::InvalidSubcommand => None,
         Some("ron") => Some("stribeck simulate SCENE.ron"),

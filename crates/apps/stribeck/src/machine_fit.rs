@@ -123,6 +123,7 @@ struct Given {
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    options.reading.limits.apply();
     ensure!(
         options.records.len() == options.states.len(),
         "{} records and {} states: give one `--defect` for each record, in their order",

@@ -177,8 +177,8 @@ mod tests {
     /// saw nothing.
     #[test]
     fn issue_a_cage_that_will_stray_is_seen_beforehand() {
-        let bearing = "rollers: 17, roller_diameter_mm: 11, inner_race_diameter_mm: 59.5, bore_mm: 50, \
-                       outside_mm: 90, width_mm: 23";
+        let bearing = "rollers: 17, roller_diameter_mm: 11, pitch_mm: 70.5, bore_mm: 50, outside_mm: 90, \
+                       width_mm: 23";
         let scene = |cage: &str| {
             of(&format!(
                 "(bearing: ({bearing}), {cage} model: reduced(), film: None, solver: (duration_ms: 1000))"
