@@ -10,7 +10,7 @@
 //! | What is known before the first step? | `setup.rs` |
 //! | **What is recorded, and in which order?** | `channels.rs` |
 //! | What is a sampling interval? | `time_loop.rs` |
-//! | What is watched? | `guards.rs`, of rollers and cage `placed.rs`, of contact `softness.rs` |
+//! | What is watched? | `guards.rs`, of contact `softness.rs` |
 //! | How does a run continue? | `checkpoint.rs`, `resume.rs` |
 
 pub mod channels;
