@@ -149,7 +149,10 @@ fn planted_a_sound_and_a_damaged_record() {
     says(&output, &["the baseline turned at 1188.0 rpm"]);
     let page = desk.text("over/report.html");
     assert!(page.contains("In grey behind it: sound.mat") && page.contains("at the speed of this record"));
-    says(&over("damaged.mat", &[]), &["no sound machine by its own verdict: it shows BPFO"]);
+    says(
+        &over("damaged.mat", &[]),
+        &["the baseline `damaged.mat` is left out: by its own verdict it has a defect, BPFO"],
+    );
     let output = over("absent.mat", &[]);
     assert!(!output.status.success());
     says(&output, &["--baseline absent.mat"]);
