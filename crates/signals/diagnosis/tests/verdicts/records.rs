@@ -151,7 +151,8 @@ fn peer_verdicts_on_records_of_case_western_reserve() {
     }
 }
 
-/// Healthy and damaged records of eight rigs, whatever their sensors and converters: each is a record of a signal.
+/// Healthy and damaged records of eight rigs, whatever their sensors and converters: each is a record of a signal. Case
+/// Western Reserve University (2000), FEMTO-ST (2012), HIT (2021), IMS (2007), MFPT (2013), Paderborn (2016), UESTC (2022).
 #[test]
 fn peer_measured_records_are_records_of_a_signal() {
     let mut channels = 0;
