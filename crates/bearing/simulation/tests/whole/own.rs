@@ -96,11 +96,12 @@ fn behaves_sixteen_bearings_of_catalogues_run_at_the_first_try() {
         )
     };
     let balls = BALLS.iter().map(|&(boundary, balls, mm, load)| {
-        (scene(boundary, format!("balls: {balls}, ball_diameter_mm: {mm}"), load), Element::Ball)
+        let pitch = 0.5 * (boundary[0] + boundary[1]);
+        let elements = format!("balls: {balls}, ball_diameter_mm: {mm}, pitch_mm: {pitch}");
+        (scene(boundary, elements, load), Element::Ball)
     });
     let rollers = ROLLERS.iter().map(|&(boundary, count, mm, inner, load)| {
-        let elements =
-            format!("elements: {count}, roller_diameter_mm: {mm}, inner_race_diameter_mm: {inner}");
+        let elements = format!("elements: {count}, roller_diameter_mm: {mm}, pitch_mm: {}", inner + mm);
         (scene(boundary, elements, load), Element::Roller)
     });
     let all: Vec<(String, Element)> = balls.chain(rollers).collect();
