@@ -32,6 +32,7 @@ mod runner;
 mod sample;
 mod spalls;
 mod stability;
+mod starts;
 mod verdicts;
 mod work_precision;
 
@@ -53,6 +54,8 @@ pub(crate) use runner::{Finished, Runner, Variant};
 pub enum Study {
     /// Which reading of the paper agrees with it best, and whether its hypothesis holds
     Paper(Flags),
+    /// The paper's run from sixteen starts: the scatter that stands beside each of its numbers
+    Starts(starts::Options),
     /// The bearing for 0.35 s: lines resolved to 3 Hz, the defect in the envelope
     Long(long::Options),
     /// Runs killed at random moments and continued: the same bytes
@@ -83,6 +86,7 @@ impl Study {
     fn name(&self) -> &'static str {
         match self {
             Self::Paper(_) => "paper",
+            Self::Starts(_) => "starts",
             Self::Long(_) => "long",
             Self::Kills(_) => "kills",
             Self::Stability(_) => "stability",
@@ -102,6 +106,7 @@ impl Study {
         let runner = |flags: &Flags| Runner::new(self.name(), flags, host);
         match self {
             Self::Paper(flags) => paper::measure(&runner(flags), rows)?,
+            Self::Starts(options) => return starts::measure(options, host),
             Self::Long(options) => long::measure(options, host, rows)?,
             Self::Kills(options) => return kills::measure(options, host),
             Self::Stability(flags) => return stability::measure(&runner(flags), rows),

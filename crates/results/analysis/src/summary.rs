@@ -334,6 +334,10 @@ quantities! {
         /// The whole record, start-up included; `None` where it is constant.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub record: Option<RecordLevels>,
+        /// The strongest line of the mesh over all in the record that is no line of the mesh [dB]; `None` where no
+        /// family of such lines was found.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub mesh_over_rest_db: Option<f64> => "strongest line of the mesh over the bearing's own level",
         /// Every sensor.
         pub sensors: Vec<SensorLevels>,
     }

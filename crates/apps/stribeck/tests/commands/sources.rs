@@ -34,7 +34,6 @@ fn planted_components_of_a_record_are_distinguished() {
             "6205 at 1 times the shaft: The record shows a defect of the outer raceway",
             "velocity: zone",
             "NU 205 at 2.5 times the shaft: The record cannot tell whether a raceway is damaged",
-            "shows no other",
         ],
     );
     let found = desk.json("record-analysis/findings.json");

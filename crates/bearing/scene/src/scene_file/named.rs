@@ -12,7 +12,7 @@ use super::own::{self, Own};
 use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::scene::{
-    BearingScene, CageScene, ContactFormula, ContactSurface, DefectScene, ElementKind, FramesScene,
+    BearingScene, CageScene, ContactFormula, ContactInterpolation, ContactSurface, DefectScene, ElementKind, FramesScene,
     GradingScene, ModelScene, PocketWalls, ReducedScene, Scene,
 };
 
@@ -292,12 +292,15 @@ fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     }
 }
 
-/// Contact of any bearing but the paper's, where the user stated none: round, and as soft as steel. A penalty
-/// scale alone is that of an element layer.
+/// Contact of any bearing but the paper's, where the user stated none: round, of one compliance at and between nodes,
+/// and as soft as steel. A penalty scale alone is that of an element layer.
 pub(super) fn contact(scene: &mut Scene, given: &[String]) {
     let written = |path: &str| given.iter().any(|written| written == path);
     if !written("contact.surface") {
         scene.contact.surface = ContactSurface::Arc;
+    }
+    if !written("contact.interpolation") {
+        scene.contact.interpolation = ContactInterpolation::Spline;
     }
     if !written("contact.formula") && !written("contact.penalty_scale") {
         scene.contact.formula = ContactFormula::Hertz;

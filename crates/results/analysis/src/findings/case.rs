@@ -5,7 +5,7 @@ use stribeck_store::run_dir::Run;
 use stribeck_store::run_info::Status;
 
 use super::answers::{Answers, AtRest, Crossings, LeadingSpectrum, MeshLines, Orders, Rollers};
-use super::levels::{level_finding, start_up_end_s};
+use super::levels::{level_finding, mesh_over_rest_db, start_up_end_s};
 use super::passages::Passages;
 use super::sensors::{leading_channel, sensor_signals, tracks_and_channels};
 use super::spectra::{
@@ -202,7 +202,8 @@ impl<'a> Case<'a> {
         let fullest_n = at_rest.curve.as_ref().map_or(0.0, |curve| curve.largest_sound_n);
         let mut events = passages.events(self.record, fullest_n, notes)?;
         let tone = mesh.lines.iter().find(|line| line.name == ROLLER_VERTICES && line.harmonic == 1);
-        let levels = level_finding(self.record.time_s(), (sensors, tone), &mut events, filter, notes)?;
+        let mut levels = level_finding(self.record.time_s(), (sensors, tone), &mut events, filter, notes)?;
+        levels.mesh_over_rest_db = mesh_over_rest_db(&mesh.families, &levels);
         if !sensors.is_empty() && levels.impulse_g.is_none() && !self.prediction.spalls.is_empty() {
             notes.push("no impulse level: no roller leaves a spall under load within the record".into());
         }

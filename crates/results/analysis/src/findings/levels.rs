@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::SensorSignal;
 use crate::Error;
+use crate::families::FamilyFinding;
 use crate::filtering::Filter;
 use crate::levels::{self, Phase, SignalLevel, Visit};
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, RecordLevels, SensorLevels, Shape};
@@ -63,6 +64,22 @@ pub(super) fn level_finding(
     Ok(finding)
 }
 
+/// Share of a record's power below which what its lines leave is not known.
+const LEAST_REST: f64 = 1e-3;
+
+/// The strongest line of the mesh in a_y of the leading sensor over what no line of the mesh explains there [dB], at
+/// most 30.
+pub(super) fn mesh_over_rest_db(families: &[FamilyFinding], levels: &LevelsFinding) -> Option<f64> {
+    let (sensor, record) = (levels.sensor.as_ref()?, levels.record.as_ref()?);
+    let lines = families.iter().filter(|family| family.found).flat_map(|family| &family.lines);
+    let here = lines.filter(|line| line.sensor == *sensor && line.component == "ay");
+    let powers: Vec<f64> = here.filter_map(|line| line.level_g).map(|peak| 0.5 * peak * peak).collect();
+    let most = powers.iter().copied().reduce(f64::max)?;
+    let all = record.rms_g * record.rms_g;
+    let rest = (all - powers.iter().sum::<f64>()).max(LEAST_REST * all);
+    Some(10.0 * (most / rest).log10())
+}
+
 impl<'a> Spans<'a> {
     fn of(time: &'a [f64], events: &[Event]) -> Self {
         let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
@@ -99,6 +116,7 @@ impl<'a> Spans<'a> {
             between_filtered_p99_g: filtered.map(|l| l.p99),
             between_filtered_rms_g: filtered.map(|l| l.rms),
             record: Shape::of(&sensor.raw_g).as_ref().map(RecordLevels::of),
+            mesh_over_rest_db: None,
             sensors: Vec::new(),
         }
     }

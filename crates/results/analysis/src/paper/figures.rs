@@ -5,6 +5,7 @@
 //! then [`Shown::scatter`] is used, about twice that of ensembles of the paper's bearing.
 
 use std::f64::consts::FRAC_1_SQRT_2;
+use std::fmt::Write;
 
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::scene::Scene;
@@ -15,6 +16,8 @@ use crate::summary::{SensorLevels, Summary};
 
 /// The paper's impulses in its Fig. 2 [ms], read to half a millisecond.
 const IMPULSES_MS: [f64; 3] = [5.0, 16.5, 28.0];
+/// The multiple of the tone that the paper names.
+const FIFTH: f64 = 5.0;
 /// Scatter of a peak level from start to start that a single run is granted [-].
 const OF_A_LEVEL: f64 = 0.3;
 
@@ -91,11 +94,11 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
     let level = |figure, quantity: &str, paper: f64, ours| {
         number(figure, quantity, "g", paper, 0.05 * paper, OF_A_LEVEL * paper, ours)
     };
+    let events = &summary.events;
     let mut all = vec![
-        level("2", "Impulses, peak", IMPULSE_G, sensor.impulse_g),
+        level("2", "Impulses, peak, mean of all", IMPULSE_G, impulse_g(summary, sensor)),
         level("2", "Between the impulses, peak", BETWEEN_G, sensor.between_g),
     ];
-    let events = &summary.events;
     for (at, paper_ms) in IMPULSES_MS.into_iter().enumerate() {
         let quantity = format!("Impulse {}", at + 1);
         let ours = events.get(at).and_then(|event| event.left_ms());
@@ -104,7 +107,7 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
     let khz = |hz: Option<f64>| hz.map(|hz| 1e-3 * hz);
     all.extend([
         number("3", TONE[0], "Hz", TONE_HZ, 3.0, 10.0, sensor.tone_hz),
-        number("3", TONE[1], "kHz", 23.0, 0.5, 0.1, khz(sensor.fifth_hz)),
+        number("3", TONE[1], "kHz", 23.0, 0.5, 0.1, khz(fifth_hz(summary, sensor))),
         level("6", TONE[2], FILTERED_G, sensor.between_filtered_g),
         number("7", TONE[3], "dB", 25.0, 0.5, 2.0, sensor.notch_db),
     ]);
@@ -124,6 +127,52 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
         happens("#4, it is loaded again", seen(|e| e.exit_ms.is_some())),
     ]);
     all
+}
+
+/// Mean of the peaks of all impulses [g]: the largest of a few is a matter of chance. Single ones are kept of the
+/// leading sensor alone; of another one it is the largest.
+fn impulse_g(summary: &Summary, sensor: &SensorLevels) -> Option<f64> {
+    let leads = summary.levels.sensor.as_ref() == Some(&sensor.sensor);
+    let peaks: Vec<f64> = summary.events.iter().filter(|_| leads).filter_map(|event| event.impulse_g).collect();
+    Statistic::of(&peaks, peaks.len()).map_or(sensor.impulse_g, |peaks| Some(peaks.mean))
+}
+
+/// The peak at five times the tone [Hz], where it lies within half a resolution of that: beside it stands another line.
+fn fifth_hz(summary: &Summary, sensor: &SensorLevels) -> Option<f64> {
+    let half_hz = 0.5 * summary.spectrum.as_ref()?.resolution_hz;
+    let tone_hz = sensor.tone_hz?;
+    sensor.fifth_hz.filter(|hz| (hz - FIFTH * tone_hz).abs() <= half_hz)
+}
+
+/// The numbers of many starts of `fixtures/scenes/singh2014.ron`, in full, as `cargo xtask study starts` wrote them: a
+/// line each, a column a start, blank where a start has none.
+const STARTS: &str = include_str!("starts.csv");
+
+/// The same numbers of the starts that are kept with the program.
+pub fn kept_starts(shown: &[Shown]) -> Vec<Vec<Shown>> {
+    let rows: Vec<Vec<&str>> = STARTS.lines().map(|line| line.split(';').collect()).collect();
+    let starts = rows.first().map_or(0, Vec::len);
+    let of_start = |at: usize, one: &Shown| {
+        let row = rows.iter().find(|row| row[0] == one.quantity);
+        let ours = row.and_then(|row| row.get(at)?.parse().ok());
+        Shown { ours, ..one.clone() }
+    };
+    (1..starts).map(|at| shown.iter().map(|one| of_start(at, one)).collect()).collect()
+}
+
+/// The table of [`kept_starts`].
+pub fn starts_csv(starts: &[Vec<Shown>]) -> String {
+    let mut text = String::from("quantity");
+    for number in 1..=starts.len() {
+        let _ = write!(text, ";start {number}");
+    }
+    for (at, one) in starts.first().into_iter().flatten().enumerate() {
+        let _ = write!(text, "\n{}", one.quantity);
+        for start in starts {
+            let _ = write!(text, ";{}", start[at].ours.map_or(String::new(), |ours| format!("{ours:.6}")));
+        }
+    }
+    text + "\n"
 }
 
 /// The paper's numbers beside those of `starts`, in the order of the figures.

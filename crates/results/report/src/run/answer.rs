@@ -4,7 +4,7 @@
 use maud::{Markup, PreEscaped, html};
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
-use stribeck_scene::scene::{ContactSurface, DefectRing, DefectScene};
+use stribeck_scene::scene::{ContactInterpolation, ContactSurface, DefectRing, DefectScene};
 use stribeck_store::run_dir::Run;
 use stribeck_store::run_info::{Topic, imbalance};
 
@@ -27,7 +27,9 @@ const NAMED: usize = 6;
 /// The first screen: the answer in one sentence, a picture beside it, and the limits of both below.
 pub(super) fn first_screen(of: &Subject<'_>, sections: &[Section]) -> Result<Markup, Error> {
     let (run, summary) = (of.run, &of.findings.summary);
-    let warnings = warnings(run, summary);
+    // The paper's page says so by itself.
+    let of_mesh = if of.paper.is_none() { above_the_bearing(run, summary) } else { None };
+    let warnings: Vec<String> = of_mesh.into_iter().chain(warnings(run, summary)).collect();
     Ok(html! {
         div #summary class="top" {
             p class="headline" { (with_code(&headline(of))) }
@@ -131,6 +133,26 @@ fn likely_cause(summary: &Summary, in_machine: bool) -> &'static str {
         "rolling elements come under the load and leave it at that rate, and the run has no other noise of a \
          machine that would cover them"
     }
+}
+
+/// That a line of the mesh is louder than the bearing, and which field takes it away.
+fn above_the_bearing(run: &Run, summary: &Summary) -> Option<String> {
+    let over_db = summary.levels.mesh_over_rest_db.filter(|db| *db > 0.0)?;
+    let lines = summary.families.iter().filter(|family| family.found).flat_map(|family| &family.lines);
+    let here = lines.filter(|line| Some(&line.sensor) == summary.levels.sensor.as_ref() && line.component == "ay");
+    let loudest = here.max_by(|a, b| a.level_g.unwrap_or(0.0).total_cmp(&b.level_g.unwrap_or(0.0)))?;
+    let contact = &run.scene.written.contact;
+    let remedy = match (contact.surface, contact.interpolation) {
+        (ContactSurface::Facet, _) => "`contact: (surface: arc, interpolation: spline)`",
+        (_, ContactInterpolation::Linear) => "`contact.interpolation: spline`",
+        _ => "a soft `contact.onset_um` or more `contact.points_per_facet`",
+    };
+    Some(format!(
+        "A line of the mesh at {:.0} Hz stands {over_db:.0} dB above all else at sensor “{}”: levels and spectra there \
+         are the mesh’s, not the bearing’s. It goes with {remedy}.",
+        loudest.measured_hz.unwrap_or(loudest.predicted_hz),
+        loudest.sensor
+    ))
 }
 
 /// Warnings of the run and of its load, those of the contact first; that pictures are missing is a note.
