@@ -92,8 +92,8 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
         number(figure, quantity, "g", paper, 0.05 * paper, OF_A_LEVEL * paper, ours)
     };
     let mut all = vec![
-        level("2", "Impulses, peak", IMPULSE_G, sensor.impulse_g),
-        level("2", "Between the impulses, peak", BETWEEN_G, sensor.between_g),
+        level("2", MAIN[1], IMPULSE_G, sensor.impulse_g),
+        level("2", MAIN[2], BETWEEN_G, sensor.between_g),
     ];
     let events = &summary.events;
     for (at, paper_ms) in IMPULSES_MS.into_iter().enumerate() {
@@ -149,7 +149,15 @@ const TONE: [&str; 5] = [
     "Taken at 4545 Hz by the paper\u{2019}s notch",
 ];
 
+/// What the paper is about: the tone, the impulses, and the level between them before and behind the notch.
+const MAIN: [&str; 4] = [TONE[0], "Impulses, peak", "Between the impulses, peak", TONE[2]];
+
 impl Shown {
+    /// Whether it is one of the four numbers that the paper is about.
+    pub fn is_main(&self) -> bool {
+        MAIN.contains(&self.quantity.as_str())
+    }
+
     /// Whether it is a number of the tone that facets make, which contact on arcs does not have.
     pub fn is_of_tone(&self) -> bool {
         TONE.contains(&self.quantity.as_str())

@@ -280,6 +280,9 @@ fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, 
     match axis.ticks {
         Ticks::Decades => decade_texts(low, high),
         Ticks::Angle => written(twelfths_of_a_turn(low, high), Scale::ONE, ""),
+        Ticks::Counted if !axis.names.is_empty() => {
+            axis.names.iter().enumerate().map(|(n, name)| (n as f64 + 1.0, name.clone())).collect()
+        }
         Ticks::Counted => written(whole_ticks(low, high, wanted), Scale::ONE, ""),
         Ticks::Plain => written(ticks(low, high, wanted), Scale::ONE, ""),
         Ticks::Prefixed => {

@@ -19,7 +19,7 @@ pub(super) fn section(case: &PaperCase<'_>, summary: &Summary) -> Section {
 }
 
 /// Why peaks of a contact by a penalty differ from the paper's: the study `paper` varies its stiffness.
-const SOFT: &str = " The paper does not print the stiffness of its contact, and peaks follow it: six times as high where \
+const SOFT: &str = "The paper does not print the stiffness of its contact, and peaks follow it: six times as high where \
     the penalty is 30 times as stiff. This run has a penalty, not the contact of steel by Hertz.";
 
 /// A run of the paper's bearing, or many starts of it of which one is drawn.
@@ -139,17 +139,33 @@ impl<'a> PaperCase<'a> {
         format!("{met} of {all} numbers that Singh et al. (2014) print are met within what {scatter}.")
     }
 
-    /// Which of them are not; empty where all are.
-    pub(crate) fn not_met(&self) -> String {
-        let off: Vec<String> = self
-            .on_record()
-            .filter(|b| b.differs())
-            .map(|b| format!("{} (Fig. {})", told(b), b.shown.figure))
-            .collect();
-        if off.is_empty() {
-            return String::new();
+    /// The four numbers that the paper is about, and why peaks are not those of steel where they are not.
+    pub(crate) fn main_numbers(&self) -> Markup {
+        let main: Vec<&Beside> = self.beside.iter().filter(|b| b.shown.is_main()).collect();
+        let has_off_peaks = main.iter().any(|b| b.shown.unit == "g" && b.differs() && !self.is_cured(b));
+        html! {
+            table class="main" {
+                tr { th { "" } th class="n" { "Paper" } th class="n" { "Ours" } th { "" } }
+                @for b in main {
+                    tr {
+                        td { (b.shown.quantity) " (Fig. " (b.shown.figure) ")" }
+                        td class="n" { (printed(b)) }
+                        (cell(ours(b)))
+                        td { (self.judged(b)) }
+                    }
+                }
+            }
+            @if has_off_peaks && !self.softness.is_empty() { p class="hint" { (self.softness) } }
         }
-        format!("Not met: {}.{}", off.join("; "), self.softness)
+    }
+
+    fn judged(&self, b: &Beside) -> Markup {
+        html! {
+            @if self.is_cured(b) { "gone with the facets" }
+            @else if self.is_behind_the_end(b) { "not on record" }
+            @else if b.differs() { strong { "differs" } }
+            @else { "agrees" }
+        }
     }
 
     /// Quantities that differ by more than the scatter, the largest difference first, then the others.
@@ -197,7 +213,7 @@ impl<'a> PaperCase<'a> {
                 td class="n" { (printed(b)) }
                 (cell(ours(b)))
                 @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
-                td { @if self.is_cured(b) { "gone with the facets" } @else if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
+                td { (self.judged(b)) }
             }
         };
         wide_table(
