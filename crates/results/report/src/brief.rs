@@ -9,15 +9,15 @@ use stribeck_diagnosis::{Analysis, MeasuredFindings};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::measured::{self, Baseline};
-use crate::page::sentence;
+use crate::page::{sentence, with_code};
 use crate::plot::Figure;
 use crate::series::{self, SeriesFindings};
 use crate::{Error, SeriesRecord};
 
 /// Name of the sheet, which a browser prints.
 pub const SHEET: &str = "verdict.html";
-/// Height of its picture over its width: the rest of the sheet is for words.
-const PICTURE_PX: u32 = 760;
+/// Width of its picture: letters are as large as those about it [px].
+const PICTURE_PX: u32 = 640;
 
 /// Writes the sheet of the record in `file` into `folder`, which must be there.
 ///
@@ -32,7 +32,12 @@ pub fn write_brief(
     let findings = &analysis.findings;
     let mut provenance = vec![("Record", recorded(file, findings)), ("Machine", machine(findings))];
     provenance.extend(baseline.map(|healthy| ("Healthy machine", healthy.name.clone())));
-    let picture = measured::evidence(analysis, baseline)?.into_iter().next();
+    let mut figures = measured::evidence(analysis, baseline)?;
+    // Without a claim what stands highest: a comb that is no family's before the nearest family.
+    let is_foreign = |figure: &Figure| figure.id == measured::FOREIGN;
+    let foreign =
+        figures.iter().position(is_foreign).filter(|_| !findings.families.iter().any(|f| f.claimed));
+    let picture = (!figures.is_empty()).then(|| figures.swap_remove(foreign.unwrap_or(0)));
     write(folder, file, &findings.verdict, &Brief::of(findings), picture, provenance)
 }
 
@@ -83,12 +88,12 @@ fn write(
             body {
                 p class="of" { (title) }
                 h1 { (brief.headline) }
-                p { (verdict) }
+                p { (with_code(verdict)) }
                 (answers(brief))
                 @if let (Some(figure), Some(svg)) = (&picture, &drawn) {
                     figure {
                         (PreEscaped(svg))
-                        figcaption { (figure.title) ". " (figure.caption) }
+                        figcaption { (figure.caption) " " (figure.note) }
                     }
                 }
                 table class="small" {
@@ -109,7 +114,7 @@ pub(crate) fn answers(brief: &Brief) -> Markup {
             tr { th { "How sure" } td { (sure) } }
             @if let Some(length) = length { tr { th { "How long" } td { (length) } } }
             tr { th { "Not seen" } td { (unseen) } }
-            tr { th { "Next" } td { (next) } }
+            tr { th { "Next" } td { (with_code(next)) } }
         }
     }
 }
@@ -118,7 +123,7 @@ pub(crate) fn answers(brief: &Brief) -> Markup {
 fn recorded(file: &str, findings: &MeasuredFindings) -> String {
     let MeasuredFindings { channel, unit, rate_hz, duration_s, .. } = findings;
     let file = if file.is_empty() { String::new() } else { format!("{file}, ") };
-    let unit = unit.as_ref().map_or(String::new(), |unit| format!(", in {unit}"));
+    let unit = unit.as_ref().map_or(", unit not known".to_owned(), |unit| format!(", in {unit}"));
     let flaws: Vec<&str> = findings.quality.iter().map(|found| found.kind.name()).collect();
     let flaws = if flaws.is_empty() { String::new() } else { format!("; {}", flaws.join(", ")) };
     format!("{file}{channel}, {duration_s:.2} s at {} Hz{unit}{flaws}", significant(*rate_hz, 7))

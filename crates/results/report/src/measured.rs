@@ -326,13 +326,16 @@ pub(crate) fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Resu
     Ok(figures)
 }
 
+/// Name of the figure of a comb that is no family's.
+pub(crate) const FOREIGN: &str = "envelope-unexplained";
+
 /// The envelope spectrum in which a comb stands that is no family's, with its harmonics.
 fn foreign(analysis: &Analysis, baseline: Option<&Baseline>) -> Option<Figure> {
     let findings = &analysis.findings;
     let other = findings.unexplained.as_ref()?;
     let band = analysis.bands.iter().find(|band| (band.low_hz, band.high_hz) == other.band_hz)?;
     let title = format!("Squared envelope spectrum about {:.2} Hz, no family's", other.hz);
-    let mut figure = spectrum_of(band, "envelope-unexplained", &title, 5.6 * other.hz).caption(format!(
+    let mut figure = spectrum_of(band, FOREIGN, &title, 5.6 * other.hz).caption(format!(
         "A comb at {:.3} times the shaft, {:.1} dB above its background, is no family of this bearing.",
         other.order, other.height_db
     ));

@@ -157,7 +157,7 @@ fn unseen(conclusion: &Conclusion, unit: Option<&str>) -> String {
         Some(format!("impacts below {}{over}", strength(peak, band_hz, unit)))
     };
     let Conclusion { raceways, elements, .. } = conclusion;
-    let none = || "the record could show no impacts".to_owned();
+    let none = || "none of their impacts would have shown".to_owned();
     let one_in = elements.share.map_or(f64::NAN, |share| (1.0 / share).round());
     format!(
         "Raceways: {}. Rolling elements: {}; of damaged ones this method finds one in {one_in}. Cage: never \
