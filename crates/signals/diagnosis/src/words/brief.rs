@@ -2,6 +2,7 @@
 //! shown, and what to do next.
 
 use crate::conclusion::LEAST_TURNS;
+use crate::families::limits::ALPHA;
 use crate::series::{Series, SeriesFamily};
 use crate::words::numbers::{chance, significant};
 use crate::words::sentence::strength;
@@ -31,7 +32,7 @@ impl Brief {
         Self {
             headline: headline(&parts, findings),
             sure: match claimed.iter().map(|f| f.p_value).reduce(f64::max) {
-                Some(p) => sure_of_a_defect(p),
+                Some(p) => sure_of_a_defect(p, findings),
                 None => sure_of_none(findings),
             },
             length: (!claimed.is_empty()).then(|| length(findings, &claimed)),
@@ -50,7 +51,7 @@ impl Brief {
         Self {
             headline: headline(&parts, &of_last),
             sure: match claimed.iter().map(|f| f.p_value).reduce(f64::max) {
-                Some(p) => sure_of_a_defect(p),
+                Some(p) => sure_of_a_defect(p, last),
                 None => sure_of_none(&of_last),
             },
             length: (!claimed.is_empty()).then(|| match series.growth {
@@ -90,8 +91,18 @@ fn headline(parts: &[(Defect, Option<Defect>)], findings: &MeasuredFindings) -> 
     }
 }
 
-fn sure_of_a_defect(p_value: f64) -> String {
-    format!("Probability that a healthy bearing shows as much: {}.", chance(p_value))
+/// A claim rests on its probability, or on records of the healthy machine that show less.
+fn sure_of_a_defect(p_value: f64, findings: &MeasuredFindings) -> String {
+    let alone = format!("Probability that a healthy bearing shows as much: {}.", chance(p_value));
+    match findings.sound_as_high.filter(|_| p_value >= ALPHA) {
+        Some(sound) => format!(
+            "{} of {} records of the healthy machine show as much. Without them: {}",
+            sound.as_high,
+            sound.records,
+            alone.replacen('P', "p", 1)
+        ),
+        None => alone,
+    }
 }
 
 fn sure_of_none(findings: &MeasuredFindings) -> String {
