@@ -243,8 +243,8 @@
       legend: { live: true },
       hooks: { setCursor: [(u) => figure.classList.toggle("read", u.cursor.left >= 0)] },
       scales: { x: { time: false, ...(spec.x.range ? { range: (u, a, b) => (a == null ? spec.x.range : [a, b]) } : {}) }, y: fixed(spec.y.range) },
-      // On a phone ticks stand nearer together, so that an axis has five.
-      axes: [{ ...axisStyle(spec.x, 34), space: (u, i, low, high, length) => Math.max(52, Math.min(80, length / 5)) }, { ...axisStyle(spec.y, 74), space: 36 }],
+      // On a phone ticks stand nearer together, so that an axis has more than two.
+      axes: [{ ...axisStyle(spec.x, 34), space: (u, i, low, high, length) => Math.max(44, Math.min(80, length / 6)) }, { ...axisStyle(spec.y, 74), space: 36 }],
       series: [
         { label: spec.x.label, value: readout(spec.x, 6) },
         ...spec.series.map((s) => ({
