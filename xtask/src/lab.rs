@@ -22,6 +22,14 @@ pub(crate) struct Options {
     embed: bool,
 }
 
+/// The command whose page opens in the browser, too: a page of the source is for whoever made it.
+pub(crate) fn opened(command: stribeck::Command) -> stribeck::Command {
+    match command {
+        stribeck::Command::Lab(options) => stribeck::Command::Lab(options.opened()),
+        other => other,
+    }
+}
+
 /// The command of the program, with a module that is built before it where it makes a lab.
 pub(crate) fn with_module(command: stribeck::Command) -> Result<stribeck::Command> {
     Ok(match command {
@@ -46,9 +54,17 @@ pub(crate) fn build_module(options: &Options) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Has rustup add the target, which takes no network where it is there; without rustup cargo says what it lacks.
+fn add_target(root: &std::path::Path) {
+    let words = ["--quiet", "target", "add", TARGET];
+    // No answer counts: a compiler of a distribution may have the target without it.
+    drop(Command::new("rustup").current_dir(root).args(words).status());
+}
+
 /// The module, built where a build finds the same name again.
 pub(crate) fn build() -> Result<PathBuf> {
     let root = workspace::root();
+    add_target(&root);
     // A folder of its own: cargo would wait for the one that runs this command.
     let folder = workspace::target().join("lab");
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));

@@ -70,6 +70,7 @@ fn main() -> ExitCode {
     stribeck::conclude(match cli.command {
         Command::Program(command) if command.needs_full() => handed_on::program(&words, cli.loudness),
         Command::Program(command) => lab::with_module(command)
+            .map(lab::opened)
             .and_then(fmu::with_library)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
         Command::Study(words) => handed_on::study(&words, cli.loudness),

@@ -235,7 +235,7 @@ async function open(n) {
   lab.handles = { ...lab.scene };
   const f = lab.facts;
   nameWritten();
-  $("lead").textContent = inWords(`${f.title}: ${f.rollers} rollers of ${shown(2 * f.roller, "m")}${f.balls ? ", modelled as cylinders" : ""}, raceways ${shown(2 * f.outer, "m")} and ${shown(2 * f.inner, "m")}, ${f.modes} modes below ${shown(f.highestHz * 1.02, "Hz")}`);
+  $("lead").textContent = inWords(`${f.title}: ${f.rollers} rollers of ${shown(2 * f.roller, "m")}${f.balls ? ", modelled as cylinders" : ""}, raceways ${shown(2 * f.outer, "m")} and ${shown(2 * f.inner, "m")}, ${f.highestHz > 0 ? `${f.modes} modes below ${shown(f.highestHz * 1.02, "Hz")}` : "rigid rings"}`);
   buildHandles();
   buildFixed();
   stage.open(f);

@@ -6,21 +6,21 @@ const passing = (f, h) => (h.spallRing > 1 ? `BPFI, ${shown(f.bpfi, "Hz")}` : `B
 
 export const PRESETS = [
   {
-    id: "noise", name: "Fig. 2: noise", roller: true,
+    id: "noise", name: "Noise", roller: true,
     set: (scene) => ({ ...scene, arcs: 0 }), notch: false, view: "trace",
     words: (f, h) => `Whenever a roller leaves the spall it strikes the ring (${passing(f, h)}), and between two strikes a real bearing would be nearly quiet. `
-      + "This one never is: its circles are meshed with straight facets, and a polygon that rolls over a polygon knocks at every corner.",
+      + "This one never is: its circles are meshed with straight facets, and a polygon that rolls over a polygon knocks at every corner (Singh et al. 2014, Fig. 2).",
   },
   {
-    id: "facets", name: "Fig. 4: facets", roller: true,
+    id: "facets", name: "Facets", roller: true,
     set: (scene) => ({ ...scene, arcs: 0, facets: Math.max(8, Math.round(0.1875 * scene.facets) * 4) }), notch: false, view: "spectrum",
     words: (f, h) => `A roller with ${h.facets} facets turns about itself at ${f.spin.toFixed(2)} Hz, so its corners pass the raceway at ${h.facets} × ${f.spin.toFixed(2)} Hz = ${shown(f.facets, "Hz")}: the tone at the red mark of the spectrum. `
       + "Change the facets or the speed and the tone moves with them; the resonances of the ring stay where they are.",
   },
   {
-    id: "notch", name: "Fig. 6: notch", roller: true,
+    id: "notch", name: "Notch", roller: true,
     set: (scene) => ({ ...scene, arcs: 0 }), notch: true, view: "trace",
-    words: (f) => `The paper's remedy is a notch filter at the tone of ${shown(f.facets, "Hz")}, of quality 15 and without delay: in the uppermost plot the thin line is the signal, the thick one what the filter leaves. `
+    words: (f) => `The remedy of Singh et al. (2014, Fig. 6) is a notch filter at the tone of ${shown(f.facets, "Hz")}, of quality 15 and without delay: in the uppermost plot the thin line is the signal, the thick one what the filter leaves. `
       + "It removes that tone alone; its multiples and all else that facets do stay in the signal.",
   },
   {

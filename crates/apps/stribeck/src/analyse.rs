@@ -13,18 +13,19 @@ mod turning;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use stribeck_diagnosis::Analysis;
 use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, State};
 use stribeck_diagnosis::record::velocity;
 use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
 use stribeck_diagnosis::sources::Component;
-use stribeck_report::{Baseline, write_measured};
+use stribeck_report::{Baseline, SHEET, write_brief, write_measured};
 use stribeck_scene::catalogue;
 use stribeck_store::run_dir::check_folder;
 
 use crate::interrupt::Interrupt;
 use crate::out::say;
+use crate::pdf;
 use crate::place::{Place, shown};
 pub(crate) use reading::{Accelerations, Reading, Speed, accelerations, examine};
 use simulated::Simulation;
@@ -81,6 +82,9 @@ pub struct Options {
     /// -analysis]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// The verdict on one page, too, as verdict.pdf, A4, through Chromium, Chrome or Edge where one is installed
+    #[arg(long, conflicts_with_all = ["components", "together"])]
+    pdf: bool,
     /// Writes the findings to standard output as JSON
     #[arg(long)]
     json: bool,
@@ -132,10 +136,14 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let [file] = &files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
+        remove_sheet(&out)?;
         let analysis = analyse(file, Some(&out), &asked, &reading)?;
+        if options.pdf {
+            write_brief(&out, &name_of(file), &analysis, sound.first())?;
+        }
         if options.json {
             say!("{}", serde_json::to_string_pretty(&analysis.findings)?);
-            return Ok(ExitCode::SUCCESS);
+            return print_sheet(options, &out);
         }
         print(&analysis);
         for limit in &options.alarms {
@@ -145,9 +153,33 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             }
         }
         say!("report: {}", shown(&out.join("report.html")));
-        return Ok(ExitCode::SUCCESS);
+        return print_sheet(options, &out);
     }
     series::run(&files, &asked, reading)
+}
+
+/// Removes the verdict on one page of an earlier analysis, which must not pass for that of this one.
+fn remove_sheet(out: &Path) -> Result<()> {
+    for sheet in [out.join(SHEET), out.join(SHEET).with_extension("pdf")].iter().filter(|file| file.exists())
+    {
+        std::fs::remove_file(sheet).with_context(|| format!("cannot replace {}", shown(sheet)))?;
+    }
+    Ok(())
+}
+
+/// Prints the verdict on one page, where it is requested.
+fn print_sheet(options: &Options, out: &Path) -> Result<ExitCode> {
+    if options.pdf {
+        let pdf = pdf::print(&out.join(SHEET))?;
+        if !options.json {
+            say!("pdf: {}", shown(&pdf));
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn name_of(file: &Path) -> String {
+    file.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy()).into_owned()
 }
 
 /// A level and its limits in words.
@@ -176,7 +208,7 @@ struct Asked<'a> {
 fn analyse(asked: &Path, out: Option<&Path>, of: &Asked<'_>, reading: &Reading) -> Result<Analysis> {
     let Asked { options, sound, simulation, place } = *of;
     let mut analysis = examine(asked, reading, place)?;
-    let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
+    let name = name_of(asked);
     if let (Some(simulation), Some(out)) = (simulation, out) {
         // What is known without it stays when the simulation is interrupted.
         write_measured(out, &name, &analysis, None)?;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::stress::{Lame, von_mises};
+use stribeck_analysis::stress::{Stress, elastic};
 use stribeck_dsp::Sensor;
 use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
 use stribeck_mesh::decks::Deck;
@@ -387,7 +387,7 @@ fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
         );
     }
     let whole = RunMesh::read(dir.mesh())?;
-    let lame = Lame::of(&run.scene.material);
+    let material = elastic(&run.scene.material);
     let of_frame = |frame: &frames::Frame| {
         let part = Part::of(&whole, frame);
         let rigid = |n: usize| {
@@ -397,7 +397,10 @@ fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
                 .any(|b| b.name == "cage" && (b.quads.contains(&n) || part.is_triangle_of(b, n)))
         };
         let of_element = |(n, corners): (usize, &[u32])| {
-            if rigid(n) { 0.0 } else { von_mises(&part.reference(corners), &part.moved(corners), &lame) }
+            if rigid(n) {
+                return 0.0;
+            }
+            Stress::of(&material, &part.reference(corners), &part.moved(corners)).von_mises()
         };
         let stress = part.elements().enumerate().map(of_element).collect();
         Stressed { time_s: frame.time_s, stress, part }

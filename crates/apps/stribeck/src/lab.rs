@@ -18,7 +18,7 @@ pub struct Options {
     /// are a preset]; a full model runs in its modes
     scenes: Vec<PathBuf>,
     /// The page
-    #[arg(long, value_name = "FILE", default_value = "lab.html")]
+    #[arg(long, value_name = "FILE", default_value = PAGE)]
     out: PathBuf,
     /// Overrides a field of every scene, for example --set model=reduced(modes_khz:20); may be repeated
     #[arg(long = "set", value_name = "FIELD=VALUE")]
@@ -26,11 +26,17 @@ pub struct Options {
     /// Opens the page in the browser
     #[arg(long)]
     open: bool,
+    /// Whether it opens where there is a browser.
+    #[arg(skip)]
+    opens: bool,
     /// The module that steps the bearing, built by `cargo xtask lab-module` [default: the one that the
     /// program was built with]
     #[arg(long, value_name = "FILE")]
     module: Option<PathBuf>,
 }
+
+/// The page, unless it is written elsewhere.
+const PAGE: &str = "lab.html";
 
 /// Names the module for programs that are not beside it.
 const VARIABLE: &str = "STRIBECK_LAB_MODULE";
@@ -48,6 +54,12 @@ const MOST_SCENES: usize = 12;
 const LARGEST: usize = 3 << 20;
 
 impl Options {
+    /// With the page opened where there is a browser, unless it is written to a place of the user's choice.
+    pub fn opened(mut self) -> Self {
+        self.opens = self.out == Path::new(PAGE);
+        self
+    }
+
     /// With a module that was just built, unless the user named one.
     pub fn with_module(mut self, module: PathBuf) -> Self {
         self.module.get_or_insert(module);
@@ -72,6 +84,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     write(&scenes, &module, &place.runs(), &again(options, place), &options.out)?;
     if options.open {
         open(&options.out)?;
+    } else if options.opens
+        && let Err(why) = open(&options.out)
+    {
+        say!("{why}");
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -140,9 +156,8 @@ fn found(place: &Place) -> Result<PathBuf> {
         Some(file) => Ok(file),
         None => bail!(
             "this program was built without {MODULE}, which steps the bearing in the page. In the repository \
-             of Stribeck `cargo xtask lab` builds it and makes the page, and `cargo xtask lab-module --embed` \
-             before `cargo install` gives it to the program; both need `rustup target add \
-             wasm32-unknown-unknown`. Elsewhere put the file beside the program, or name it with --module or \
+             of Stribeck `cargo xtask lab` builds it, makes the page and opens it, and `cargo xtask lab-module \
+             --embed` before `cargo install` gives it to the program. Elsewhere put the file beside the program, or name it with --module or \
              {VARIABLE}"
         ),
     }

@@ -9,7 +9,7 @@ use crate::place::shown;
 use crate::shelf::Kind;
 
 /// Files of all kinds of folders, by name.
-const FILES: [&str; 31] = [
+const FILES: [&str; 33] = [
     // A run, an ensemble and their reports.
     "run.json",
     "ensemble.json",
@@ -41,6 +41,8 @@ const FILES: [&str; 31] = [
     "DATASHEET.md",
     // Records.
     "findings.json",
+    "verdict.html",
+    "verdict.pdf",
     "trend.json",
     "trend.html",
     "joint.json",

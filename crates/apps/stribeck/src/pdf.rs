@@ -16,7 +16,7 @@ const BUDGET_MS: u32 = 20_000;
 /// The browser is that of `STRIBECK_BROWSER`, or the first of [`NAMES`] on the path. It runs with a profile
 /// of its own, which is removed, and needs no network.
 pub(crate) fn print(page: &Path) -> Result<PathBuf> {
-    let browser = browser(std::env::var_os("STRIBECK_BROWSER").map(PathBuf::from))?;
+    let browser = browser(std::env::var_os("STRIBECK_BROWSER").map(PathBuf::from), page)?;
     let page = page.canonicalize().with_context(|| format!("cannot read {}", page.display()))?;
     let pdf = page.with_extension("pdf");
     let profile = page.with_extension("browser");
@@ -48,8 +48,8 @@ pub(crate) fn print(page: &Path) -> Result<PathBuf> {
     Ok(pdf)
 }
 
-/// The browser that somebody chose, or one on the path.
-fn browser(chosen: Option<PathBuf>) -> Result<PathBuf> {
+/// The browser that somebody chose, or one on the path, to print `page`.
+fn browser(chosen: Option<PathBuf>, page: &Path) -> Result<PathBuf> {
     if let Some(chosen) = chosen {
         ensure!(
             chosen.is_file(),
@@ -65,9 +65,9 @@ fn browser(chosen: Option<PathBuf>) -> Result<PathBuf> {
     found.with_context(|| {
         format!(
             "--pdf needs Chromium, Chrome or Edge to print the page, and none of {} is on the path. Install \
-             one, name its program in STRIBECK_BROWSER, or open report.html in any browser and print it to a \
-             file",
-            NAMES.join(", ")
+             one, name its program in STRIBECK_BROWSER, or open {} in any browser and print it to a file",
+            NAMES.join(", "),
+            page.display()
         )
     })
 }
@@ -78,7 +78,8 @@ mod tests {
 
     #[test]
     fn refuses_a_browser_that_is_no_file() {
-        let why = browser(Some("/nowhere/chromium".into())).unwrap_err().to_string();
+        let why =
+            browser(Some("/nowhere/chromium".into()), Path::new("report.html")).unwrap_err().to_string();
         assert!(why.contains("STRIBECK_BROWSER") && why.contains("/nowhere/chromium"), "{why}");
     }
 }

@@ -488,6 +488,7 @@ impl Dynamics {
     }
 
     /// Puts every body that turns at a prescribed rate where its nodes have been moved to.
+    #[cfg(feature = "statics")]
     pub(crate) fn follow_nodes(&mut self) {
         for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid).filter(|(body, _)| body.turns()) {
             body.follow_nodes(at, &self.state);

@@ -85,7 +85,8 @@
 //! | What is one step? | `dynamics.rs` |
 //! | How are vibrations damped? | `damping.rs` by mass; by stiffness `kernel/stiffness_damping.rs`; over a band of frequencies `structural_damping.rs`, in motion `springs.rs` |
 //! | How do bodies move that do not deform? | `rigid.rs` |
-//! | How is equilibrium found? | `statics.rs`, `statics/` |
+//! | How is equilibrium found? | `statics.rs`, `statics/`, under the feature `statics` |
+//! | How stressed is an element? | `stress.rs` |
 //! | How long may a step be? | `critical.rs` |
 //! | What energies are there? | `energies.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
@@ -111,7 +112,9 @@ pub mod springs;
 pub mod structural_damping;
 
 pub mod critical;
+#[cfg(feature = "statics")]
 pub mod statics;
+pub mod stress;
 
 pub mod distortion;
 pub mod energies;
@@ -127,6 +130,7 @@ pub use force::Force;
 pub use kernel::layout;
 pub use material::Elastic;
 pub use model::{Behaviour, Model, NodeMotion};
+pub use stress::Stress;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

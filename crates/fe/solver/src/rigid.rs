@@ -125,6 +125,7 @@ impl RigidBody {
     }
 
     /// Puts the body where its nodes are, which have been moved without turning.
+    #[cfg(feature = "statics")]
     pub(crate) fn follow_nodes(&self, at: &mut RigidState, state: &State) {
         let (s, c) = libm::sincos(at.angle);
         let (n, a) = (self.slots.start, self.arm[0]);

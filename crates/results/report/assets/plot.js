@@ -23,6 +23,7 @@
 
   // All ticks of an axis share one prefix; neighbours differ in their last decimal.
   const tickTexts = (axis) => (u, splits, i, space, step) => {
+    if (axis.names.length) return splits.map((v) => axis.names[v - 1] ?? "");
     const largest = splits.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
     const [factor, prefix] = axis.ticks === "prefixed" ? prefixOf(largest) : [1, ""];
     const unit = axis.ticks === "prefixed" && axis.unit ? " " + prefix + axis.unit : "";
@@ -69,6 +70,21 @@
   // Steps of 1, 2 and 5 only: their multiples never need more decimals than the step itself.
   const STEPS = [];
   for (let power = -15; power <= 15; power++) for (const m of [1, 2, 5]) STEPS.push(Number(`${m}e${power}`));
+
+  // Powers of ten and as many numbers between them as make three ticks; nearer than that, equal steps.
+  const decades = (u, i, low, high, step) => {
+    const between = high - low > 4 ? [[1]] : [[1, 2, 5], [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9]];
+    const ticks = between.map((digits) => {
+      const all = [];
+      for (let power = Math.floor(low); power <= high; power++) for (const m of digits) all.push(power + Math.log10(m));
+      return all.filter((at) => at >= low && at <= high);
+    });
+    const enough = ticks.find((all) => all.length > 2);
+    if (enough) return enough;
+    const all = [];
+    for (let n = Math.ceil(low / step); n * step <= high; n++) all.push(n * step);
+    return all;
+  };
 
   const FONT = "12px system-ui, sans-serif";
   const ROW = 15;
@@ -199,6 +215,7 @@
     grid: { stroke: () => theme("--grid"), width: 1 },
     ticks: { stroke: () => theme("--grid"), width: 1, size: 5 },
     values: tickTexts(axis),
+    splits: axis.ticks === "decades" ? decades : undefined,
     incrs: axis.ticks === "angle" ? [1, 5, 10, 15, 30, 45, 90] : axis.ticks === "counted" ? STEPS.filter((step) => step >= 1) : STEPS,
   });
 
@@ -226,7 +243,8 @@
       legend: { live: true },
       hooks: { setCursor: [(u) => figure.classList.toggle("read", u.cursor.left >= 0)] },
       scales: { x: { time: false, ...(spec.x.range ? { range: (u, a, b) => (a == null ? spec.x.range : [a, b]) } : {}) }, y: fixed(spec.y.range) },
-      axes: [{ ...axisStyle(spec.x, 34), space: 80 }, { ...axisStyle(spec.y, 74), space: 36 }],
+      // On a phone ticks stand nearer together, so that an axis has more than two.
+      axes: [{ ...axisStyle(spec.x, 34), space: (u, i, low, high, length) => Math.max(44, Math.min(80, length / 6)) }, { ...axisStyle(spec.y, 74), space: 36 }],
       series: [
         { label: spec.x.label, value: readout(spec.x, 6) },
         ...spec.series.map((s) => ({

@@ -63,6 +63,8 @@ fn drawn() -> Vec<Drawn> {
 const MOST_FIELDS: usize = 4;
 /// Rows of the table.
 const MOST_ROWS: usize = 1000;
+/// Letters of all names on an axis: the chart of a phone has no room for more.
+const NAMES: usize = 40;
 /// A field whose values span more than this is drawn over its logarithm.
 const DECADES_FROM: f64 = 20.0;
 
@@ -248,14 +250,18 @@ impl Abscissa {
                     .and_then(|value| all.iter().position(|v| *v == value))
                     .map_or(f64::NAN, |n| n as f64 + 1.0)
             };
-            let words: Vec<String> =
-                all.iter().enumerate().map(|(n, value)| format!("{} is {value}", n + 1)).collect();
-            return Self {
-                axis: Axis::counted(&title.words, all.len()),
-                places: index.runs.iter().map(place).collect(),
-                words: format!(" {}.", words.join(", ")),
-                is_ordered: false,
+            let places = index.runs.iter().map(place).collect();
+            // Longer names would overlap: numbers stand for them.
+            let is_short = all.iter().map(|value| value.chars().count() + 1).sum::<usize>() <= NAMES;
+            let (axis, words) = if is_short {
+                let names = all.iter().map(|value| (*value).to_owned()).collect();
+                (Axis::named(&title.words, names), String::new())
+            } else {
+                let words = all.iter().enumerate().map(|(n, value)| format!("{} is {value}", n + 1));
+                let words = format!(" {}.", words.collect::<Vec<_>>().join(", "));
+                (Axis::counted(&title.words, all.len()), words)
             };
+            return Self { axis, places, words, is_ordered: false };
         };
         let name = field.rsplit('.').next().unwrap_or(field);
         let is_ordered = name != "seed" && !name.ends_with("_seed");
@@ -462,7 +468,15 @@ mod tests {
         let of_words = index(vec![run(1, "outer", 1.0), run(2, "inner", 2.0), run(3, "outer", 1.5)]);
         let abscissa = Abscissa::of(&of_words, 0);
         assert_eq!(abscissa.places, [1.0, 2.0, 1.0]);
-        assert_eq!(abscissa.words, " 1 is outer, 2 is inner.");
+        assert_eq!(
+            (abscissa.axis.names, abscissa.words),
+            (vec!["outer".to_owned(), "inner".to_owned()], String::new())
+        );
+        let long = ["a name that is long", "another one that is as long"];
+        let of_long = index(vec![run(1, long[0], 1.0), run(2, long[1], 2.0)]);
+        let abscissa = Abscissa::of(&of_long, 0);
+        assert!(abscissa.axis.names.is_empty());
+        assert_eq!(abscissa.words, " 1 is a name that is long, 2 is another one that is as long.");
         let of_decades = Abscissa::of(&index(vec![run(1, "1", 1.0), run(2, "100", 2.0)]), 0);
         assert_eq!(of_decades.places, [0.0, 2.0]);
     }

@@ -2,11 +2,12 @@
 
 use stribeck_dsp::BandEnvelope;
 
+use crate::page::HALF_PAGE_PX;
 use crate::plot::{Anchor, Picture, Scale, Sheet, shade_rgb, ticks};
 
 /// Where it stands on the sheet [px].
 const AT: [f64; 2] = [104.0, 14.0];
-const SIZE: [f64; 2] = [720.0, 176.0];
+const SIZE: [f64; 2] = [416.0, 176.0];
 const INK: &str = "#14181c";
 
 /// A band that is pointed out: its ends [Hz] and why.
@@ -22,7 +23,7 @@ pub(super) fn picture(bands: &[BandEnvelope], chosen: &[Chosen]) -> Option<Pictu
     let most = most.max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis))?;
     let levels = levels(bands, half_hz);
     let high = SIZE[1] / levels.len() as f64;
-    let mut sheet = Sheet::new(880.0, 250.0);
+    let mut sheet = Sheet::new(f64::from(HALF_PAGE_PX), 250.0);
     let x = |hz: f64| AT[0] + SIZE[0] * hz / half_hz;
     for (row, (count, of_level)) in levels.iter().enumerate() {
         let y = AT[1] + high * row as f64;
@@ -51,7 +52,7 @@ pub(super) fn picture(bands: &[BandEnvelope], chosen: &[Chosen]) -> Option<Pictu
         let frame = [[left, y], [right, y], [right, y + high], [left, y + high]];
         sheet.path(&frame, true, "fill:none;stroke:#b3202c;stroke-width:3");
     }
-    let (values, step) = ticks(0.0, half_hz, 8);
+    let (values, step) = ticks(0.0, half_hz, 5);
     let foot = AT[1] + SIZE[1];
     for hz in values {
         sheet.path(&[[x(hz), foot], [x(hz), foot + 5.0]], false, "stroke:#14181c");

@@ -22,6 +22,7 @@
 //! | the smallest spall that is found | [`write_detection`] | `report.html` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | a series of measured records | [`write_series`] | `report.html`, `findings.json` |
+//! | either on one sheet of paper | [`write_brief`], [`write_series_brief`] | `verdict.html` |
 //! | several channels of one machine | [`write_joint`] | `joint.html`, `joint.json` |
 //!
 //! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG, PNG). The page of a
@@ -43,6 +44,7 @@ mod sound;
 mod run;
 
 mod agreement;
+mod brief;
 mod campaign;
 mod comparison;
 mod detection;
@@ -55,6 +57,7 @@ mod sources;
 mod error;
 
 pub use agreement::write_agreement;
+pub use brief::{SHEET, write_brief, write_series_brief};
 pub use campaign::{CampaignIndex, write_campaign};
 pub use comparison::{
     MOST_COMPARED, answer as comparison_in_words, by_chance, difference, mean, write_comparison,

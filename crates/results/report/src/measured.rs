@@ -8,10 +8,12 @@ use stribeck_analysis::quantity::schema;
 use stribeck_dsp::BandEnvelope;
 use stribeck_store::run_dir::write_atomic;
 
+use crate::brief::answers;
 use crate::page::{self, charts, document, drawn, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, SeriesFindings, SourcesFindings, course, kurtogram, sound};
 use stribeck_diagnosis::record::quality::Quality;
+use stribeck_diagnosis::words::brief::Brief;
 use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
@@ -71,9 +73,9 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
                 "."
                 @if let Some(baseline) = baseline { " In grey behind it: " (baseline.name) "." }
             }
-            p { strong { (findings.verdict) } }
+            p class="headline" { (findings.verdict) }
+            (answers(&Brief::of(findings)))
             @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
-            @if let Some(words) = spall_in_words(findings) { p { (words) } }
             h2 #evidence { "What the verdict rests on" }
             (evidence)
             h3 { "What would change it" }
@@ -210,16 +212,6 @@ fn cursor(findings: &MeasuredFindings) -> Cursor {
     Cursor { known }
 }
 
-/// The length of a spall with its interval. One event a passage bounds no length: it may be the only one.
-fn spall_in_words(findings: &MeasuredFindings) -> Option<String> {
-    findings.spall_mm.map(|spall| {
-        format!(
-            "Length of the spall: {:.2} mm, 90 % between {:.2} and {:.2} mm.",
-            spall.value, spall.low, spall.high
-        )
-    })
-}
-
 fn families(families: &[Family]) -> Markup {
     let hz = |value: Option<f64>| value.map_or("–".to_owned(), |hz| format!("{hz:.2}"));
     html! {
@@ -310,7 +302,7 @@ fn shown(families: &[Family]) -> Vec<&Family> {
 
 /// Of each family that is shown its envelope spectrum, the combs that it is compared with and the mean over
 /// its period; without a family the envelope of the band that knocks most.
-fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figure>, Error> {
+pub(crate) fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figure>, Error> {
     let findings = &analysis.findings;
     let mut figures = Vec::new();
     for family in shown(&findings.families) {
@@ -334,13 +326,16 @@ fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figu
     Ok(figures)
 }
 
+/// Name of the figure of a comb that is no family's.
+pub(crate) const FOREIGN: &str = "envelope-unexplained";
+
 /// The envelope spectrum in which a comb stands that is no family's, with its harmonics.
 fn foreign(analysis: &Analysis, baseline: Option<&Baseline>) -> Option<Figure> {
     let findings = &analysis.findings;
     let other = findings.unexplained.as_ref()?;
     let band = analysis.bands.iter().find(|band| (band.low_hz, band.high_hz) == other.band_hz)?;
     let title = format!("Squared envelope spectrum about {:.2} Hz, no family's", other.hz);
-    let mut figure = spectrum_of(band, "envelope-unexplained", &title, 5.6 * other.hz).caption(format!(
+    let mut figure = spectrum_of(band, FOREIGN, &title, 5.6 * other.hz).caption(format!(
         "A comb at {:.3} times the shaft, {:.1} dB above its background, is no family of this bearing.",
         other.order, other.height_db
     ));

@@ -98,6 +98,8 @@ pub struct Axis {
     pub ticks: Ticks,
     /// Range [unit]; `None` follows the data.
     pub range: Option<(f64, f64)>,
+    /// Names in place of the numbers 1, 2 and so on; empty without.
+    pub names: Vec<String>,
 }
 
 /// Kind of an axis's values, which decides how ticks are placed and written.
@@ -315,7 +317,7 @@ impl Axis {
 
     /// An axis whose unit takes no prefix (g, dB, %).
     pub fn plain(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), ticks: Ticks::Plain, range: None }
+        Self { label: label.into(), unit: unit.into(), ticks: Ticks::Plain, range: None, names: Vec::new() }
     }
 
     /// An axis of angles over a whole turn [°].
@@ -331,6 +333,12 @@ impl Axis {
     /// An axis of numbers of things, counted from 1: records, runs.
     pub fn counted(label: &str, count: usize) -> Self {
         Self { ticks: Ticks::Counted, ..Self::plain(label, "") }.over(0.5, count as f64 + 0.5)
+    }
+
+    /// An axis of names, at 1, 2 and so on.
+    pub fn named(label: &str, names: Vec<String>) -> Self {
+        let counted = Self::counted(label, names.len());
+        Self { names, ..counted }
     }
 
     /// The same axis over a fixed range.

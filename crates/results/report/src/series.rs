@@ -8,11 +8,13 @@ use serde::Serialize;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
+use crate::brief::answers;
 use crate::page::{cell, document, folded, json, wide_table};
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark, Series as Curve};
 use stribeck_diagnosis::quantities;
 use stribeck_diagnosis::record::alarm::{Judged, Limit, Quantity, State};
 use stribeck_diagnosis::series::{Onset, Series};
+use stribeck_diagnosis::words::brief::Brief;
 use stribeck_diagnosis::words::numbers::chance;
 use stribeck_diagnosis::{Defect, Family, Interval, MeasuredFindings};
 
@@ -66,6 +68,9 @@ fn page(findings: &SeriesFindings, limits: &[Limit]) -> Result<Markup, Error> {
         html! {
             h1 { (title) }
             p class="headline" { (series.verdict) }
+            @if let Some(last) = records.iter().rev().find_map(|record| record.findings.as_ref()) {
+                (answers(&Brief::of_series(series, last)))
+            }
             @if series.sound > 0 {
                 p class="hint" { "The first " (series.sound) " records are of the sound machine." }
             }
@@ -191,7 +196,7 @@ fn alarms(entries: &[SeriesRecord], limits: &[Limit]) -> Markup {
 }
 
 /// Levels from one record to the next, beside their limits.
-fn levels(entries: &[SeriesRecord], limits: &[Limit]) -> Vec<Figure> {
+pub(crate) fn levels(entries: &[SeriesRecord], limits: &[Limit]) -> Vec<Figure> {
     let over = |of: &dyn Fn(&MeasuredFindings) -> Option<f64>| -> Vec<f64> {
         entries.iter().map(|e| e.findings.as_ref().and_then(of).unwrap_or(f64::NAN)).collect()
     };
@@ -265,7 +270,7 @@ fn points(name: &str, colour: Colour, y: Vec<f64>) -> Curve {
 }
 
 /// Heights of the families' combs, with the onsets of those that are claimed.
-fn heights(series: &Series) -> Option<Figure> {
+pub(crate) fn heights(series: &Series) -> Option<Figure> {
     let axis = Axis::plain("Height above the background", "dB");
     let mut figure = chart("heights", "How high each family stands", series.records, axis);
     for (family, colour) in series.families.iter().zip(COLOURS) {

@@ -8,7 +8,8 @@ mod synthetic;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use stribeck_diagnosis::{Analysis, Machine};
+use stribeck_diagnosis::series::Series;
+use stribeck_diagnosis::{Analysis, Machine, MeasuredFindings};
 use stribeck_dsp::channel::Channel;
 use stribeck_report as report;
 use stribeck_store::run_info::Status;
@@ -159,6 +160,90 @@ fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
     let said = title_in(&browser, &phone, &folder.join("profile"), false, "390,844");
     assert_eq!(said, "failed= errors=");
 }
+
+/// The verdict for whoever decides: a defect, a healthy bearing, one that cannot be told, and a series.
+#[test]
+fn behaves_the_verdict_is_one_sheet_of_paper() {
+    /// Longer than a line of the sheet.
+    const FILE: &str = "a record of the third pump in hall seven, drive end, taken before the stop of the spring, \
+                        second copy.mat";
+    let machine = Machine {
+        speed_rpm: Some(1200.0),
+        bearing: Some(CatalogueBearing::parse("6205").expect("known")),
+        ..Machine::default()
+    };
+    let of =
+        |height: f64, machine: &Machine| Analysis::of(&knocks(height), 12_800.0, machine).expect("a signal");
+    let (damaged, healthy) = (of(2.0, &machine), of(0.0, &machine));
+    let unknown = of(2.0, &Machine::default());
+    let scratch = Scratch::create("sheet");
+    let mut folders = Vec::new();
+    for (analysis, headline) in [
+        (&damaged, "Defect of the outer raceway"),
+        (&healthy, "No defect of a raceway"),
+        (&unknown, "No verdict: speed or bearing is not known"),
+    ] {
+        let folder = scratch.join(headline);
+        std::fs::create_dir_all(&folder).expect("room");
+        report::write_brief(&folder, FILE, analysis, None).expect("a sheet");
+        folders.push((folder, headline));
+    }
+    let records = || [&healthy, &healthy, &damaged, &damaged, &damaged].map(|of| of.findings.clone());
+    let series = Series::of(&records().iter().map(Some).collect::<Vec<_>>(), 0, &[]);
+    let record = |(n, findings): (usize, MeasuredFindings)| report::SeriesRecord {
+        file: format!("{n} {FILE}"),
+        folder: None,
+        findings: Some(findings),
+        error: None,
+        alarms: Vec::new(),
+    };
+    let all =
+        report::SeriesFindings { series, records: records().into_iter().enumerate().map(record).collect() };
+    let folder = scratch.join("series");
+    std::fs::create_dir_all(&folder).expect("room");
+    report::write_series_brief(&folder, &all).expect("a sheet");
+    folders.push((folder, "Defect of the outer raceway"));
+    for (folder, headline) in &folders {
+        let page = std::fs::read_to_string(folder.join(report::SHEET)).expect("a sheet");
+        for words in [headline, "How sure", "Not seen", "Next", "Program", "<svg"] {
+            assert!(page.contains(words), "{words}: {}", folder.display());
+        }
+        assert_eq!(page.contains("How long"), headline.starts_with("Defect"), "{}", folder.display());
+    }
+    let Some(browser) = browser() else { return };
+    for (folder, headline) in folders {
+        let page = std::fs::read_to_string(folder.join(report::SHEET)).expect("a sheet");
+        let probed = folder.join("probed.html");
+        std::fs::write(&probed, page.replacen("</body>", &format!("{FITS}</body>"), 1)).expect("room");
+        assert_eq!(title_of(&browser, &probed, &folder.join("profile"), false), "fits", "{headline}");
+        let pdf = folder.join("sheet.pdf");
+        let printed = Command::new(&browser)
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+                "--no-pdf-header-footer",
+            ])
+            .arg(format!("--user-data-dir={}", folder.join("profile").display()))
+            .arg(format!("--print-to-pdf={}", pdf.display()))
+            .arg(format!("file://{}", folder.join(report::SHEET).display()))
+            .output();
+        printed.expect("an installed browser starts");
+        let bytes = std::fs::read(&pdf).expect("a file that was printed");
+        let pages = String::from_utf8_lossy(&bytes).matches("/Type /Page\n").count();
+        assert_eq!(pages, 1, "{headline}");
+    }
+}
+
+/// Whether nothing on a sheet is cut off, and its picture is tall enough to be read [px].
+const FITS: &str = r##"<script>
+addEventListener("load", () => {
+  const sheet = document.body, picture = document.querySelector("svg").getBoundingClientRect().height;
+  const fits = sheet.scrollHeight <= sheet.clientHeight && picture > 150;
+  document.title = "PROBE " + (fits ? "fits" : `${sheet.scrollHeight} in ${sheet.clientHeight}, picture ${picture}`) + " END";
+});
+</script>"##;
 
 /// Buttons, keys and clicks on the page of a run: the bearing plays, goes by frames, follows a click on a
 /// trace; tabs, the whole band and files of figures.

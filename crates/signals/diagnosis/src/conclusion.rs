@@ -81,7 +81,7 @@ pub(crate) enum Doubt {
 }
 
 /// Turns of the shaft with which a record can show that a raceway is whole.
-const LEAST_TURNS: f64 = 20.0;
+pub(crate) const LEAST_TURNS: f64 = 20.0;
 
 impl Doubt {
     /// Of a record of `turns` turns.

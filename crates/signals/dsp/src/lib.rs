@@ -48,6 +48,26 @@
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
 //! | a signal by name, unit and rate, wherever its samples lie | [`channel`] |
 //!
+//! # The spectrum of a record
+//!
+//! Welch's average over segments, as `scipy.signal.welch(x, fs, nperseg=4096)` has it; the root mean square of
+//! noise comes back from its area.
+//!
+//! ```
+//! use stribeck_dsp::{Welch, WelchOptions};
+//! # fn main() -> Result<(), stribeck_dsp::Error> {
+//! # let mut seed = 1_u64;
+//! # let mut noise = || { seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407); (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5 };
+//! let record: Vec<f64> = (0..100_000).map(|_| noise()).collect();
+//! let options = WelchOptions::new(4096); // `WelchOptions::default()`: segments of 256
+//! let spectrum = Welch::new(51_200.0, record.len(), &options)?.estimate(&record)?;
+//! assert_eq!(spectrum.values().len(), 2049); // unit²/Hz, from 0 to 25.6 kHz
+//! let rms = spectrum.band_rms(0.0, 25_600.0)?;
+//! assert!((rms / (1.0_f64 / 12.0).sqrt() - 1.0).abs() < 0.02, "{rms}");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # A measured sine
 //!
 //! An accelerometer sampled at 100 kHz for 30 ms sees 50 m/s² at 4671 Hz. What are the frequency and the

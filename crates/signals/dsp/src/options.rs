@@ -51,6 +51,13 @@ pub struct WelchOptions {
     pub sides: Sides,
 }
 
+/// Segments of 256 samples, as `scipy.signal.welch`.
+impl Default for WelchOptions {
+    fn default() -> Self {
+        Self::new(256)
+    }
+}
+
 impl WelchOptions {
     /// Defaults of `scipy.signal.welch` for segments of `segment` samples: periodic Hann window, 50 %
     /// overlap, removal of the mean, one-sided density, mean. No zero padding.

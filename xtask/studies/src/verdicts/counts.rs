@@ -208,8 +208,7 @@ pub(super) fn false_alarms(rows: &mut Rows, records: &[Labelled], judged: &[Judg
     }
     let claimed: Vec<f64> = values.iter().map(|p| p.max(1e-12).log10()).collect();
     let observed: Vec<f64> = (0..of).map(|n| ((n as f64 + 0.5) / of as f64).log10()).collect();
-    let axis =
-        |label: &str| Axis { label: label.into(), unit: String::new(), ticks: Ticks::Decades, range: None };
+    let axis = |label: &str| Axis::decades(label, "");
     let (x, y) = (axis("claimed, p_value"), axis("observed: share of families"));
     let mut figure = Figure::new("p", "Observed against claimed", x, y)
         .with(Series::listed("families of sound records", Colour::Blue, claimed, observed).as_points())

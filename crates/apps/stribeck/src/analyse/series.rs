@@ -8,10 +8,10 @@ use stribeck_diagnosis::MeasuredFindings;
 use stribeck_diagnosis::pool::{Pool, Pooled};
 use stribeck_diagnosis::record::alarm::{Limit, Quantity, State};
 use stribeck_diagnosis::series::Series;
-use stribeck_report::{SeriesFindings, SeriesRecord, write_series};
+use stribeck_report::{SeriesFindings, SeriesRecord, write_series, write_series_brief};
 use stribeck_store::run_dir::{check_folder, write_atomic};
 
-use super::{Asked, Options, Reading, analyse, baseline, passed};
+use super::{Asked, Options, Reading, analyse, baseline, passed, print_sheet, remove_sheet};
 use crate::causes;
 use crate::interrupt::Interrupted;
 use crate::out::{say, tell};
@@ -91,7 +91,11 @@ pub(super) fn run(files: &[PathBuf], asked: &Asked<'_>, mut reading: Reading) ->
         records.iter().enumerate().flat_map(|(at, r)| alarms(at + 1, r)).collect();
     let series = Series::of(&findings, sound, &pooled).alarmed(&alarms);
     let all = SeriesFindings { series, records };
+    remove_sheet(&out)?;
     write_series(&out, &all, &limits)?;
+    if options.pdf {
+        write_series_brief(&out, &all)?;
+    }
     if options.json {
         say!("{}", serde_json::to_string_pretty(&all)?);
     } else {
@@ -104,6 +108,7 @@ pub(super) fn run(files: &[PathBuf], asked: &Asked<'_>, mut reading: Reading) ->
         }
         say!("report: {}", shown(&out.join("report.html")));
     }
+    print_sheet(options, &out)?;
     let failed = all.records.iter().filter(|record| record.findings.is_none()).count();
     ensure!(failed == 0, "{failed} of {} records could not be analysed", all.records.len());
     Ok(ExitCode::SUCCESS)

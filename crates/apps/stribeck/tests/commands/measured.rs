@@ -65,6 +65,26 @@ fn planted_a_record_gives_a_verdict_findings_and_a_page() {
         &page,
         &["Squared envelope spectrum about BPFO", "Enhanced envelope spectrum", "id=\"spectrogram\""],
     );
+    // Probability and length stand under the heading.
+    let places = ["<h1>", "healthy bearing shows as much", "Not determined: one impact", "<h2"];
+    let places = places.map(|words| page.find(words).expect(words));
+    assert!(places.is_sorted(), "{places:?}");
+}
+
+/// The sheet for whoever decides: without a browser it says where it is, and a later analysis leaves no older one.
+#[test]
+fn behaves_the_verdict_on_one_page_is_written_beside_the_report() {
+    let desk = Desk::new("measured-pdf");
+    write(&desk, "a.mat", knocks(12_800.0), &[("shaft_rpm", 1200.0)]);
+    let words = "analyse a.mat --rate-hz 12800 --bearing 6205 --channel housing";
+    let mut command = desk.command(format!("{words} --pdf").as_str());
+    let output = command.env("STRIBECK_BROWSER", "/nowhere/chromium").output().expect("it starts");
+    let text = said(&output);
+    assert!(!output.status.success() && text.contains("/nowhere/chromium"), "{text}");
+    let sheet = desk.text("a-analysis/verdict.html");
+    assert_has(&sheet, &["Defect of the outer raceway", "How sure", "How long", "Not seen", "Next", "a.mat"]);
+    desk.succeeds(words);
+    assert!(!desk.join("a-analysis/verdict.html").exists());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_analysis::stress::{Lame, von_mises};
+use stribeck_analysis::stress::{Stress, elastic};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::bearing::assembly::Assembly;
@@ -98,13 +98,13 @@ fn analytic_contacts_of_the_physical_scene_are_hertzian() {
             out(a).total_cmp(&out(b))
         });
         let rim = height(rim.expect("a node"));
-        let lame = Lame::of(&g.material);
+        let material = elastic(&g.material);
         let quads = mesh.quads[body.quads.clone()].iter().map(|quad| &quad[..]);
         let elements = quads.chain(mesh.triangles[body.triangles.clone()].iter().map(|corners| &corners[..]));
         let stressed = elements.filter(|corners| corners.iter().all(|&n| near(n))).map(|corners| {
             let at = |place: &dyn Fn(u32) -> [f64; 2]| corners.iter().map(|&n| place(n)).collect::<Vec<_>>();
             let middle = corners.iter().map(|&n| height(n)).sum::<f64>() / corners.len() as f64;
-            (von_mises(&at(&reference), &at(&now), &lame), rim - middle)
+            (Stress::of(&material, &at(&reference), &at(&now)).von_mises(), rim - middle)
         });
         let (worst, depth) = stressed.max_by(|a, b| a.0.total_cmp(&b.0)).expect("elements");
 

@@ -1,8 +1,8 @@
 //! Numbers read from the paper's figures, beside ours: in their order, with the scatter of starts.
 //!
 //! The paper is one start, so its number *differs* where it lies farther from the mean of our starts than a
-//! further start would in 95 % of cases, plus the reading error of the print. A single run has no scatter;
-//! then [`Shown::scatter`] is used, about twice that of ensembles of the paper's bearing.
+//! further start would in 95 % of cases, plus the reading error of the print. A single run has no scatter and
+//! is granted that of the starts which are kept with the program, or [`Shown::scatter`].
 
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::fmt::Write;
@@ -51,6 +51,8 @@ pub struct Beside {
     pub ours: Option<Statistic>,
     /// Starts.
     pub of: usize,
+    /// Over the starts that are kept with the program, beside those of a single run.
+    pub kept: Option<Statistic>,
 }
 
 /// The sensor whose a_y is set beside the paper's: the leading one where that is more radial than tangential,
@@ -96,8 +98,8 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
     };
     let events = &summary.events;
     let mut all = vec![
-        level("2", "Impulses, peak, mean of all", IMPULSE_G, impulse_g(summary, sensor)),
-        level("2", "Between the impulses, peak", BETWEEN_G, sensor.between_g),
+        level("2", MAIN[1], IMPULSE_G, impulse_g(summary, sensor)),
+        level("2", MAIN[2], BETWEEN_G, sensor.between_g),
     ];
     for (at, paper_ms) in IMPULSES_MS.into_iter().enumerate() {
         let quantity = format!("Impulse {}", at + 1);
@@ -178,13 +180,16 @@ pub fn starts_csv(starts: &[Vec<Shown>]) -> String {
 /// The paper's numbers beside those of `starts`, in the order of the figures.
 pub fn beside(starts: &[Vec<Shown>]) -> Vec<Beside> {
     let Some(first) = starts.first() else { return Vec::new() };
-    let one = |(at, shown): (usize, &Shown)| {
+    let over = |starts: &[Vec<Shown>], at: usize| {
         let ours: Vec<f64> = starts.iter().filter_map(|start| start.get(at)?.ours).collect();
-        Beside {
-            shown: Shown { ours: None, ..shown.clone() },
-            ours: Statistic::of(&ours, starts.len()),
-            of: starts.len(),
-        }
+        Statistic::of(&ours, starts.len())
+    };
+    let kept = if starts.len() == 1 { kept_starts(first) } else { Vec::new() };
+    let one = |(at, shown): (usize, &Shown)| Beside {
+        shown: Shown { ours: None, ..shown.clone() },
+        ours: over(starts, at),
+        of: starts.len(),
+        kept: over(&kept, at),
     };
     first.iter().enumerate().map(one).collect()
 }
@@ -198,7 +203,15 @@ const TONE: [&str; 5] = [
     "Taken at 4545 Hz by the paper\u{2019}s notch",
 ];
 
+/// What the paper is about: the tone, the impulses, and the level between them before and behind the notch.
+const MAIN: [&str; 4] = [TONE[0], "Impulses, peak, mean of all", "Between the impulses, peak", TONE[2]];
+
 impl Shown {
+    /// Whether it is one of the four numbers that the paper is about.
+    pub fn is_main(&self) -> bool {
+        MAIN.contains(&self.quantity.as_str())
+    }
+
     /// Whether it is a number of the tone that facets make, which contact on arcs does not have.
     pub fn is_of_tone(&self) -> bool {
         TONE.contains(&self.quantity.as_str())
@@ -206,6 +219,12 @@ impl Shown {
 }
 
 impl Beside {
+    /// How far one start may lie from the mean.
+    fn granted(&self) -> f64 {
+        let scatter = |starts: Option<Statistic>| starts?.of_a_further_one();
+        scatter(self.ours).or(scatter(self.kept)).unwrap_or(self.shown.scatter)
+    }
+
     /// Whether the paper's number differs from ours by more than the scatter of starts and its own print; a
     /// number that most starts lack differs.
     pub fn differs(&self) -> bool {
@@ -214,14 +233,13 @@ impl Beside {
         if shown.at_least {
             return ours.mean < 0.5 * shown.paper;
         }
-        let granted = ours.of_a_further_one().unwrap_or(shown.scatter);
-        (ours.mean - shown.paper).abs() > granted + shown.read
+        (ours.mean - shown.paper).abs() > self.granted() + shown.read
     }
 
     /// Difference of the means over its limit [-]; infinite where ours is missing. Sorts the differences.
     pub fn distance(&self) -> f64 {
         let Some(ours) = self.ours.filter(|s| 2 * s.count > self.of) else { return f64::INFINITY };
-        let granted = ours.of_a_further_one().unwrap_or(self.shown.scatter) + self.shown.read;
+        let granted = self.granted() + self.shown.read;
         (ours.mean - self.shown.paper).abs() / granted.max(f64::MIN_POSITIVE)
     }
 }

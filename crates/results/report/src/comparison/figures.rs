@@ -13,6 +13,8 @@ const LOW_HZ: f64 = 10_000.0;
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
 /// Harmonics of the inner raceway's frequency up to which an envelope spectrum is drawn.
 const HARMONICS: f64 = 3.2;
+/// Lines of an envelope spectrum between two harmonics at least: of fewer none stands out.
+const LINES: f64 = 10.0;
 /// Upper end of an envelope spectrum where no family is known [Hz].
 const UNKNOWN_HZ: f64 = 500.0;
 
@@ -156,9 +158,13 @@ fn envelopes(comparison: &Comparison, sides: &[(&Side, Colour)]) -> Option<Figur
         axis.over(0.0, end),
         Axis::plain("Power over the mean power²", "dB"),
     );
-    let mut bands = Vec::new();
+    let (mut bands, mut short) = (Vec::new(), Vec::new());
     for (side, colour) in sides {
         let Some((spectrum, (low_hz, high_hz))) = side.envelope(band_hz) else { continue };
+        if end * unit_of(side) < LINES * HARMONICS * spectrum.step {
+            short.push(side.label.as_str());
+            continue;
+        }
         let first = ((LOWEST_CYCLIC_HZ / spectrum.step) as usize).max(1).min(spectrum.values.len());
         let shown = Sampled {
             start: first as f64 * spectrum.step / unit_of(side),
@@ -186,8 +192,13 @@ fn envelopes(comparison: &Comparison, sides: &[(&Side, Colour)]) -> Option<Figur
     let each = sides.iter().map(|(side, _)| format!("{} {}", side.label, claimed(side)));
     Some(figure.caption(format!("Claimed as defects: {}.", each.collect::<Vec<_>>().join(", "))).note(
         format!(
-            "Dashed: where the families are expected without slip. Bands: {}.{}",
+            "Dashed: where the families are expected without slip. Bands: {}.{}{}",
             bands.join("; "),
+            if short.is_empty() {
+                String::new()
+            } else {
+                format!(" Too short for one: {}.", short.join(", "))
+            },
             if orders { " The speeds differ, so frequencies are divided by that of the shaft." } else { "" }
         ),
     ))

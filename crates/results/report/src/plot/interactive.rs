@@ -30,6 +30,7 @@ struct SentAxis<'a> {
     unit: &'a str,
     ticks: Ticks,
     range: Option<(f64, f64)>,
+    names: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -119,7 +120,13 @@ impl Figure {
 
 impl<'a> SentAxis<'a> {
     fn of(axis: &'a Axis) -> Self {
-        Self { label: &axis.label, unit: &axis.unit, ticks: axis.ticks, range: axis.range }
+        Self {
+            label: &axis.label,
+            unit: &axis.unit,
+            ticks: axis.ticks,
+            range: axis.range,
+            names: &axis.names,
+        }
     }
 }
 

@@ -25,6 +25,8 @@ const LEFT: u32 = 92 * FINE;
 const RIGHT: u32 = 26 * FINE;
 /// Strength of a shaded ground between two series.
 const SHADE: f64 = 0.25;
+/// Room of a tick and its text on the horizontal axis [units].
+const ROOM: i32 = px(84);
 /// Space below the chart [units].
 const BELOW: u32 = 56 * FINE;
 
@@ -254,7 +256,7 @@ fn draw_grid(
     let (frame, grid) = (RGBColor(90, 90, 90), RGBColor(226, 226, 226));
     let (left, top) = chart.backend_coord(&(x.0, y.1));
     let (right, bottom) = chart.backend_coord(&(x.1, y.0));
-    for (at, name) in tick_texts(x_axis, x, 10) {
+    for (at, name) in tick_texts(x_axis, x, ((right - left) / ROOM) as usize) {
         let (across, _) = chart.backend_coord(&(at, y.0));
         root.draw(&PathElement::new([(across, top), (across, bottom)], grid.stroke_width(FINE)))?;
         text(root, &name, (across, bottom + px(7)), 12, HPos::Center, &BLACK)?;
@@ -280,6 +282,9 @@ fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, 
     match axis.ticks {
         Ticks::Decades => decade_texts(low, high),
         Ticks::Angle => written(twelfths_of_a_turn(low, high), Scale::ONE, ""),
+        Ticks::Counted if !axis.names.is_empty() => {
+            axis.names.iter().enumerate().map(|(n, name)| (n as f64 + 1.0, name.clone())).collect()
+        }
         Ticks::Counted => written(whole_ticks(low, high, wanted), Scale::ONE, ""),
         Ticks::Plain => written(ticks(low, high, wanted), Scale::ONE, ""),
         Ticks::Prefixed => {

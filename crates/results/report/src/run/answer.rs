@@ -37,7 +37,7 @@ pub(super) fn first_screen(of: &Subject<'_>, sections: &[Section]) -> Result<Mar
             div class="answer" {
                 @if let Some(paper) = &of.paper {
                     p { (with_code(paper.of_tone())) }
-                    p { (paper.not_met()) }
+                    (paper.main_numbers())
                 }
                 // The paper's table has the peaks.
                 p { strong { "The defect. " } (defect(run, summary, of.paper.is_none())) }

@@ -8,6 +8,7 @@ mod numbers;
 use maud::{Markup, html};
 use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper::{self, Beside};
+use stribeck_analysis::statistic::Statistic;
 use stribeck_analysis::summary::{SensorLevels, Summary};
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_scene::scene::{ContactFormula, ContactSurface, Scene};
@@ -19,7 +20,7 @@ pub(super) fn section(case: &PaperCase<'_>, summary: &Summary) -> Section {
 }
 
 /// Why peaks of a contact by a penalty differ from the paper's: the study `paper` varies its stiffness.
-const SOFT: &str = " The paper does not print the stiffness of its contact, and peaks follow it: six times as high where \
+const SOFT: &str = "The paper does not print the stiffness of its contact, and peaks follow it: six times as high where \
     the penalty is 30 times as stiff. This run has a penalty, not the contact of steel by Hertz.";
 
 /// A run of the paper's bearing, or many starts of it of which one is drawn.
@@ -41,6 +42,8 @@ pub(crate) struct PaperCase<'a> {
     cured: bool,
     /// Whether contact is with facets.
     faceted: bool,
+    /// Starts that are kept with the program, beside a single run.
+    kept: usize,
 }
 
 impl<'a> PaperCase<'a> {
@@ -79,7 +82,8 @@ impl<'a> PaperCase<'a> {
         // The fundamental is the first of its numbers.
         let tone = beside.iter().find(|b| b.shown.is_of_tone());
         let cured = !faceted && tone.is_some_and(|tone| tone.ours.is_none());
-        Some(Self { starts, drawn, number, levels, sensor, beside, softness, short, cured, faceted })
+        let kept = beside.iter().filter_map(|b| Some(b.kept?.of)).max().unwrap_or(0);
+        Some(Self { starts, drawn, number, levels, sensor, beside, softness, short, cured, faceted, kept })
     }
 
     /// Whether a number is missing because the record ends before it can show.
@@ -139,17 +143,38 @@ impl<'a> PaperCase<'a> {
         format!("{met} of {all} numbers that Singh et al. (2014) print are met within what {scatter}.")
     }
 
-    /// Which of them are not; empty where all are.
-    pub(crate) fn not_met(&self) -> String {
-        let off: Vec<String> = self
-            .on_record()
-            .filter(|b| b.differs())
-            .map(|b| format!("{} (Fig. {})", told(b), b.shown.figure))
-            .collect();
-        if off.is_empty() {
-            return String::new();
+    /// The four numbers that the paper is about, and why peaks are not those of steel where they are not.
+    pub(crate) fn main_numbers(&self) -> Markup {
+        let main: Vec<&Beside> = self.beside.iter().filter(|b| b.shown.is_main()).collect();
+        let has_off_peaks = main.iter().any(|b| b.shown.unit == "g" && b.differs() && !self.is_cured(b));
+        html! {
+            table class="main" {
+                tr {
+                    th { "" } th class="n" { "Paper" } th class="n" { "Ours" }
+                    @if self.kept > 0 { th class="n" { (self.kept) " starts" } }
+                    th { "" }
+                }
+                @for b in main {
+                    tr {
+                        td { (b.shown.quantity) " (Fig. " (b.shown.figure) ")" }
+                        td class="n" { (printed(b)) }
+                        (cell(ours(b)))
+                        @if self.kept > 0 { (cell(b.kept.map(|s| with_scatter(&s)))) }
+                        td { (self.judged(b)) }
+                    }
+                }
+            }
+            @if has_off_peaks && !self.softness.is_empty() { p class="hint" { (self.softness) } }
         }
-        format!("Not met: {}.{}", off.join("; "), self.softness)
+    }
+
+    fn judged(&self, b: &Beside) -> Markup {
+        html! {
+            @if self.is_cured(b) { "gone with the facets" }
+            @else if self.is_behind_the_end(b) { "not on record" }
+            @else if b.differs() { strong { "differs" } }
+            @else { "agrees" }
+        }
     }
 
     /// Quantities that differ by more than the scatter, the largest difference first, then the others.
@@ -188,6 +213,7 @@ impl<'a> PaperCase<'a> {
             th { "Figure" } th { "What it shows" } th class="n" { "Paper" }
             th class="n" { @if several { "Ours, mean ± 95 %" } @else { "Ours" } }
             @if several { th class="n" { "Single starts" } }
+            @if self.kept > 0 { th class="n" { (self.kept) " starts of singh2014.ron" } }
             th { "Beyond the scatter" }
         };
         let row = |(first, b): (bool, &Beside)| {
@@ -197,7 +223,8 @@ impl<'a> PaperCase<'a> {
                 td class="n" { (printed(b)) }
                 (cell(ours(b)))
                 @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
-                td { @if self.is_cured(b) { "gone with the facets" } @else if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
+                @if self.kept > 0 { (cell(b.kept.map(|s| with_scatter(&s)))) }
+                td { (self.judged(b)) }
             }
         };
         wide_table(
@@ -215,6 +242,12 @@ impl<'a> PaperCase<'a> {
                 "The paper is one start: its number differs where it lies farther from the mean of {} starts \
                  than a further one would in 95 % of cases.",
                 self.starts.len()
+            )
+        } else if self.kept > 0 {
+            format!(
+                "A single run does not show the scatter of starts: it is granted that of {} starts of singh2014.ron, \
+                 whose means and standard deviations stand beside it. `--starts 12` measures that of this scene.",
+                self.kept
             )
         } else {
             "A single run does not show the scatter of starts: levels are granted 30 %, the notch 2 dB, \
@@ -235,6 +268,13 @@ impl<'a> PaperCase<'a> {
 /// A number with three digits, or as many as a frequency needs.
 fn number(value: f64) -> String {
     if value.abs() >= 1000.0 { format!("{value:.0}") } else { significant(value, 3) }.replace('-', "−")
+}
+
+/// Mean and standard deviation.
+fn with_scatter(s: &Statistic) -> String {
+    let scatter = s.deviation.filter(|d| *d > 0.0).map_or(String::new(), |d| format!(" ± {}", significant(d, 2)));
+    let missing = if s.count < s.of { format!(", in {} of {}", s.count, s.of) } else { String::new() };
+    number(s.mean) + &scatter + &missing
 }
 
 /// The paper's number as it prints it.

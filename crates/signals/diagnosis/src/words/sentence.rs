@@ -107,12 +107,15 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, t
     if let Some(other) = unexplained {
         if let Some(hidden) = families.iter().find(|f| f.undecided && may_be_of(f, other.hz)) {
             return format!(
-                "The record has impacts at {:.2} Hz, {:.3} times the shaft, where {} lies beside one of the machine's own \
-                 lines: a measured speed or a longer record would tell them apart.",
+                "No bearing defect claimed: the record has impacts at {:.2} Hz, {:.3} times the shaft, where {} lies beside one \
+                 of the machine's own lines: a measured speed or a longer record would tell them apart.",
                 other.hz, other.order, hidden.name
             );
         }
-        let at = format!("The record has impacts at {:.2} Hz, {:.3} times the shaft", other.hz, other.order);
+        let at = format!(
+            "No bearing defect claimed: the record has impacts at {:.2} Hz, {:.3} times the shaft",
+            other.hz, other.order
+        );
         return match hypothesis(families, other.hz, told) {
             Some(words) => format!("{at}. {words}; a measured speed would tell."),
             None => format!(
@@ -131,9 +134,13 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, t
         );
     }
     if families.iter().all(|f| f.band_hz.is_none()) {
-        return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, \
-            for every family. The reasons say which length or rate would do."
-            .to_owned();
+        // What one raceway lacks the other does, too.
+        let why =
+            families.first().map_or(String::new(), |family| format!("; {}: {}", family.name, family.reason));
+        return format!(
+            "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, for every \
+             family{why}."
+        );
     }
     match open(families, unexplained, doubt) {
         None => no_defect(conclusion, unit),
@@ -152,7 +159,7 @@ pub(crate) fn no_defect(conclusion: &Conclusion, unit: Option<&str>) -> String {
 }
 
 /// A peak and its band.
-fn strength(peak: f64, (low_hz, high_hz): (f64, f64), unit: Option<&str>) -> String {
+pub(crate) fn strength(peak: f64, (low_hz, high_hz): (f64, f64), unit: Option<&str>) -> String {
     let [low, high] = [low_hz, high_hz].map(|hz| significant(1e-3 * hz, 2));
     format!("{} {} (peak, {low} to {high} kHz)", significant(peak, 2), unit.unwrap_or("of its unit"))
 }

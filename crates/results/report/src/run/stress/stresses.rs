@@ -7,7 +7,7 @@ use crate::Error;
 use crate::plot::{Anchor, Picture, Sheet, shade_rgb};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
-use stribeck_analysis::stress::{Cell, Lame, cells};
+use stribeck_analysis::stress::{Cell, cells, elastic};
 use stribeck_diagnosis::words::numbers::{kilonewtons, pascals};
 use stribeck_theory::contact_law::ContactLawKind;
 
@@ -53,8 +53,8 @@ pub(super) fn pictures(
     frames: &[Frame],
 ) -> Result<Vec<Picture>, Error> {
     let scene = &record.run().scene;
-    let lame = Lame::of(&scene.material);
-    let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
+    let material = elastic(&scene.material);
+    let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &material))).collect();
     let mut pictures = Vec::new();
     let moments = moments(record, findings, window, &all)?;
     if moments.iter().any(|moment| moment.cells.iter().any(|cell| is_near(moment, cell, window))) {
