@@ -38,7 +38,8 @@ pub(crate) fn measure(options: &Options, host: &Host) -> Result<Answer> {
     write(&root().join(TABLE), &paper::starts_csv(&starts))?;
     let beside = paper::beside(&starts);
     let met = beside.iter().filter(|number| !number.differs()).count();
-    let said = format!("{met} of {} numbers of the paper are met by {} starts; {TABLE}", beside.len(), starts.len());
+    let said =
+        format!("{met} of {} numbers of the paper are met by {} starts; {TABLE}", beside.len(), starts.len());
     Ok(Answer { said: Some(said), ..Answer::default() })
 }
 

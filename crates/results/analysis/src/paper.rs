@@ -11,7 +11,7 @@ use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::{BearingScene, Scene};
 use stribeck_store::run_info::MeshInfo;
 
-pub use self::figures::{Beside, Shown, beside, kept_starts, sensor, shown, starts_csv};
+pub use self::figures::{Beside, Shown, beside, sensor, shown, starts_csv};
 use crate::prediction::Prediction;
 use crate::summary::{PaperRow, SensorLevels, Summary};
 

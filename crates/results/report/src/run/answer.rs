@@ -139,7 +139,8 @@ fn likely_cause(summary: &Summary, in_machine: bool) -> &'static str {
 fn above_the_bearing(run: &Run, summary: &Summary) -> Option<String> {
     let over_db = summary.levels.mesh_over_rest_db.filter(|db| *db > 0.0)?;
     let lines = summary.families.iter().filter(|family| family.found).flat_map(|family| &family.lines);
-    let here = lines.filter(|line| Some(&line.sensor) == summary.levels.sensor.as_ref() && line.component == "ay");
+    let here =
+        lines.filter(|line| Some(&line.sensor) == summary.levels.sensor.as_ref() && line.component == "ay");
     let loudest = here.max_by(|a, b| a.level_g.unwrap_or(0.0).total_cmp(&b.level_g.unwrap_or(0.0)))?;
     let contact = &run.scene.written.contact;
     let remedy = match (contact.surface, contact.interpolation) {

@@ -272,7 +272,8 @@ fn number(value: f64) -> String {
 
 /// Mean and standard deviation.
 fn with_scatter(s: &Statistic) -> String {
-    let scatter = s.deviation.filter(|d| *d > 0.0).map_or(String::new(), |d| format!(" ± {}", significant(d, 2)));
+    let scatter =
+        s.deviation.filter(|d| *d > 0.0).map_or(String::new(), |d| format!(" ± {}", significant(d, 2)));
     let missing = if s.count < s.of { format!(", in {} of {}", s.count, s.of) } else { String::new() };
     number(s.mean) + &scatter + &missing
 }
