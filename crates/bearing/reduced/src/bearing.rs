@@ -72,6 +72,11 @@ impl Bearing {
             friction: contact.friction,
             arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
             time_step,
+            ahead: if parameters.oil.is_some() {
+                0.0
+            } else {
+                time_step * time_step / (12.0 * rollers.inertia[0])
+            },
         };
         let resisting = parameters.oil.zip(parameters.oil.and_then(|oil| oil.resistance));
         if let Some((oil, resistance)) = resisting {

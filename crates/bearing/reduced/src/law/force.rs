@@ -20,6 +20,10 @@ pub(crate) struct Rolling<V> {
     pub(crate) race: V,
     /// Speed of the contacts along the raceway [m/s].
     pub(crate) pace: V,
+    /// How much deeper in the raceway they are taken than they are [m].
+    pub(crate) deeper: V,
+    /// By how much the speed of approach exceeds that at which dampers take energy (THEORY §9.4) [m/s].
+    pub(crate) shadow: V,
 }
 
 /// Action of a raceway on rollers: force [N] in the frame of the raceway, and moment [N m].
@@ -44,7 +48,7 @@ impl ContactLaw {
     ) -> Pushed<Vector<S>> {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
-        let Rolling { relative, spin, race, pace } = *rolling;
+        let Rolling { relative, spin, race, pace, deeper, shadow } = *rolling;
         let normal = Vector::load(simd, &contacts.normal, at);
         let o = contacts.overlap.load(simd, at);
         let d = load(simd, &contacts.d, at);
@@ -65,6 +69,8 @@ impl ContactLaw {
         // The compliance behind the penalty takes its part of the approach.
         let flexibility = Vector::load(simd, &contacts.flexibility, at);
         let part = one / (penalty * length).times_plus(flexibility, one);
+        let deeper = where_it_touches(part * deeper);
+        let normal = (penalty * length).times_plus(deeper, normal);
         let resistance = all(self.damping);
         let lost = resistance * (part * closing).times_plus(length, -(turning * o.first));
         let damping = where_it_touches(lost.max(-normal));
@@ -85,8 +91,8 @@ impl ContactLaw {
         let slip = where_it_touches(slip.min(most).max(-most));
         let drag = -(stiffness * slip);
         heat[0] = heat[0] - (old_drag + drag) * sliding;
-        heat[1] =
-            (old_damping + damping).times_plus(closing, (old_about + about).times_plus(turning, heat[1]));
+        heat[1] = (old_damping + damping)
+            .times_plus(closing - shadow, (old_about + about).times_plus(turning, heat[1]));
         slip.store(&mut contacts.slip, at);
         drag.store(&mut contacts.passive[0], at);
         damping.store(&mut contacts.passive[1], at);
@@ -96,7 +102,8 @@ impl ContactLaw {
         let deflection = Vector::load(simd, &contacts.shift, at);
         let per = all(raceway.outwards()) / Vector::load(simd, &contacts.distance, at);
         let turned = (half * o.skew + deflection * o.across) * per;
-        let along = where_it_touches(penalty * (o.across - turned)) + drag;
+        let across = o.slope.times_plus(deeper, o.across);
+        let along = where_it_touches(penalty * (across - turned)) + drag;
         let against = where_it_touches(normal + damping);
         let area = half.choose_below(touches, o.area, one);
         let pressed = where_it_touches(normal / area * o.moment);
