@@ -9,11 +9,10 @@ use std::process::ExitCode;
 use anyhow::{Result, ensure};
 use stribeck_analysis::paper;
 use stribeck_analysis::plan::{ContactNoise, MeshFacts, Plan};
-use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::ModelScene;
 use stribeck_simulation::bearing::assembly::Assembly;
-use stribeck_store::run_info::clock;
+use stribeck_store::run_info::{ReducedInfo, clock};
 
 use crate::disk;
 use crate::out::say;
@@ -146,20 +145,12 @@ fn long(scene: &ResolvedScene, trial: &Trial) -> Option<String> {
     if trial.run().quiet_s <= LONG_S {
         return None;
     }
-    let dampers = match &scene.written.housing {
-        HousingScene::Springs(springs) if springs.damping_n_s_m > 0.0 => {
-            ", and the dampers of `housing.damping_n_s_m`,"
-        }
-        _ => "",
-    };
     let step_us = 1e6 * trial.info.time_step_s;
-    let why = if step_us < 0.99 * reduced.step_us {
-        format!(
-            ": modes and contacts{dampers} allow steps of {step_us:.3} µs, not the {} µs of `model.step_us`",
-            reduced.step_us
-        )
-    } else {
-        String::new()
+    let why = match &trial.info.reduced {
+        Some(ReducedInfo { step_of, .. }) if step_us < 0.99 * reduced.step_us => {
+            format!(": its steps are {step_us:.3} µs long, none longer than {step_of}")
+        }
+        _ => String::new(),
     };
     Some(format!("the run takes hours{why}"))
 }

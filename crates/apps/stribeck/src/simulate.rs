@@ -292,7 +292,7 @@ fn announce(info: &RunInfo) {
         Some(reduced) => {
             let pace = if info.simulated_s > 0.0 { info.wall_s / info.simulated_s } else { 0.0 };
             (
-                format!("{:.2} µs", 1e6 * step),
+                format!("{:.2} µs ({})", 1e6 * step, reduced.step_of),
                 format!("{} modes", reduced.modes),
                 format!("{pace:.2} s a simulated second"),
             )

@@ -65,6 +65,7 @@ impl Bearing {
         let mut raceways = raceways(&parameters, &reduction);
         let rollers = Rollers::new(&parameters, reduction.roller_inertia);
         let facets = rollers.rims[0].outline.len() as f64;
+        let shadow = if parameters.oil.is_some() { 0.0 } else { time_step * time_step / 12.0 };
         let law = ContactLaw {
             penalty: contact.stiffness * thickness,
             sticking: STICKING * contact.stiffness * thickness,
@@ -72,6 +73,8 @@ impl Bearing {
             friction: contact.friction,
             arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
             time_step,
+            ahead: shadow / rollers.inertia[0],
+            shadow,
         };
         let resisting = parameters.oil.zip(parameters.oil.and_then(|oil| oil.resistance));
         if let Some((oil, resistance)) = resisting {

@@ -17,4 +17,9 @@ pub(crate) struct ContactLaw {
     pub(crate) arm: f64,
     /// Time step [s].
     pub(crate) time_step: f64,
+    /// How far ahead of a roller its contacts are taken, over the force on it: Δt²/12m (THEORY §9.4); 0 with oil,
+    /// whose films push, too [m/N].
+    pub(crate) ahead: f64,
+    /// Mass of a roller times that: Δt²/12 [s²].
+    pub(crate) shadow: f64,
 }

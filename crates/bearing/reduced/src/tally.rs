@@ -31,6 +31,7 @@ impl Tally {
         spent.external += sums.external.sum();
         spent.damped += sums.damped.sum();
         self.stored.kinetic += 0.5 * sums.kinetic.sum();
+        self.stored.contact += sums.shadow.sum();
     }
 
     /// Enters the work of the step into the state.
@@ -54,12 +55,14 @@ pub(crate) struct Sums<S: Simd> {
     pub(crate) damped: Vector<S>,
     /// Twice the energy.
     pub(crate) kinetic: Vector<S>,
+    /// What the Hamiltonian that the steps conserve has more than the energy, of contacts (THEORY §9.4).
+    pub(crate) shadow: Vector<S>,
 }
 
 impl<S: Simd> Sums<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S) -> Self {
         let zero = Vector::all(simd, 0.0);
-        Self { heat: [zero; 2], drive: [zero; 2], external: zero, damped: zero, kinetic: zero }
+        Self { heat: [zero; 2], drive: [zero; 2], external: zero, damped: zero, kinetic: zero, shadow: zero }
     }
 }

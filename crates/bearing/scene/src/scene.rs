@@ -89,7 +89,8 @@ group! {
         /// Natural frequency up to which modes of outer ring and adapter are kept [kHz]. Of rings of another
         /// size than the paper's 30 √(220 mm/outside diameter).
         pub modes_khz: f64 = 30.0, within(2.0, 300.0);
-        /// Longest time step [µs]; shortened so that a whole number of steps fits into a sampling interval.
-        pub step_us: f64 = 2.0, within(0.05, 5.0);
+        /// Longest time step [µs]; shortened so that a whole number of steps fits into a sampling interval, and where
+        /// contacts, modes or edges of spalls need shorter ones.
+        pub step_us: f64 = 4.0, within(0.05, 5.0);
     }
 }

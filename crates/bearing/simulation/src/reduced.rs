@@ -54,26 +54,23 @@ impl Model for Reduced {
             cache::reduced_mesh(&with.scene.written, with.runs())?;
         with.enter("preload", watch);
         let scene = with.scene;
-        let summary = ReducedInfo {
-            modes: reduction.modes,
-            highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / TAU,
-            from_cache,
-        };
+        let (modes, highest) = (reduction.modes, reduction.squares.iter().copied().fold(0.0, f64::max));
         let assembly = Assembly::of(scene, &parts)?;
         let carried_mass = reduction.structure_mass;
         let wanted = wanted(scene);
-        let (bearing, steps_per_sample) = in_steps(scene, &wanted, modal_bearing(scene, reduction)?)?;
+        let (bearing, steps_per_sample, step_of) =
+            in_steps(scene, &wanted, modal_bearing(scene, reduction)?)?;
         let state = bearing.at_start(&dense::solve)?;
         let (time_step, critical_time_step) = (bearing.time_step, bearing.critical_time_step());
         let mut warnings = Vec::from_iter(warning.map(|words| Topic::Start.warning(words)));
         warnings.extend(too_few_modes(scene, &wanted, between_rollers));
-        warnings.extend(shorter_steps(&wanted, time_step, critical_time_step));
+        warnings.extend(shorter_steps(scene, &wanted, time_step, &step_of));
         let setup = Setup {
             time_step,
             critical_time_step,
             steps_per_sample,
             mesh: assembly.mesh_info(),
-            reduced: Some(summary),
+            reduced: Some(ReducedInfo { modes, highest_hz: highest.sqrt() / TAU, from_cache, step_of }),
             wall_s: (with.host.wall_s)() - started,
             carried_mass,
             notes: own_mesh::notes(&scene.written),
@@ -157,18 +154,16 @@ fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: 
     })
 }
 
-/// A warning where the critical time step makes steps shorter than those that a scene asks for, with the cause;
-/// the default is no wish.
-fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option<Warning> {
-    let longest = 1e-6 * wanted.step_us;
+/// A warning where steps are shorter than those that a scene asks for, with the cause; the default is no wish.
+fn shorter_steps(scene: &ResolvedScene, wanted: &ReducedScene, time_step: f64, why: &str) -> Option<Warning> {
     let is_asked = wanted.step_us != ReducedScene::default().step_us;
-    (is_asked && time_step < longest && critical < longest).then(|| {
+    // A whole number of them fits into a sample in any case.
+    let is_shorter = steps_per_sample(scene, time_step) > steps_per_sample(scene, 1e-6 * wanted.step_us);
+    (is_asked && is_shorter).then(|| {
         Topic::TimeStep.warning(format!(
-            "`model.step_us` is {}, and steps are {:.3} µs: the longest stable one for its modes and contacts is {:.3} \
-             µs. A smaller `model.modes_khz` or `contact.penalty_scale` allows longer ones",
+            "`model.step_us` is {}, and steps are {:.3} µs: a whole number of them in a sample, none longer than {why}",
             wanted.step_us,
-            1e6 * time_step,
-            1e6 * critical
+            1e6 * time_step
         ))
     })
 }
@@ -237,48 +232,59 @@ pub struct Prepared {
 pub fn prepared(scene: &ResolvedScene, runs: Option<&Path>) -> Result<Prepared, Error> {
     let (mesh, _) = cache::reduced_mesh(&scene.written, runs)?;
     let modal = modal_bearing(scene, mesh.reduction)?;
-    let (bearing, steps_per_sample) = in_steps(scene, &wanted(scene), modal.clone())?;
+    let (bearing, steps_per_sample, _) = in_steps(scene, &wanted(scene), modal.clone())?;
     let start = bearing.at_start(&dense::solve)?;
     Ok(Prepared { modal, steps_per_sample, bearing, start })
 }
 
-/// Longest step over the critical one where rolling elements strike edges of spalls: with steps of 0.8 of the critical
-/// one the ledgers of a 6205 and an NU 205 by name, under 200 and 1000 N, are off by up to 1.5 % of the heat, with this
-/// by 0.23 % at most.
-const OVER_EDGES: f64 = 0.35;
+/// Longest step over the critical one where rolling elements strike edges of spalls: the ledgers of six bearings by name
+/// with spalls in a ring or an element are off by 0.02 to 0.2 % of the heat, half of what steps of 0.35 left before
+/// contacts were taken ahead (THEORY §9.4).
+const OVER_EDGES: f64 = 0.8;
 
-/// The same where neither oil nor mass damping takes the energy of the blows: at 0.35 an NU 205 in a rigid housing is
-/// off by 1.5 to 2.8 % of its little heat under 500 to 2000 N, and its guard stops it; so by 0.4 to 0.9 % under 100 to
-/// 8000 N.
+/// The same where oil takes the energy of the blows: films are not taken ahead, and at 0.8 a 6205 is off by 15 % of the
+/// heat.
+const OVER_EDGES_OILED: f64 = 0.35;
+
+/// The same where neither oil nor mass damping takes the energy of the blows, and contacts that open from blow to blow
+/// are all that a run consists of: at 0.35 an NU 205 in a rigid housing under 500 N is off by 1.4 % of its little heat,
+/// and its guard stops it; so by 0.3 to 0.5 % under 200 to 2000 N.
 const OVER_EDGES_UNDAMPED: f64 = 0.2;
 
-/// The bearing with steps of the scene's length, or shorter where the critical time step or edges demand it, and the
-/// number of steps in a sample.
+/// The bearing with steps of the scene's length, or shorter where the critical time step or edges demand it; the number
+/// of steps in a sample; and what has set their length, in words.
 fn in_steps(
     scene: &ResolvedScene,
     wanted: &ReducedScene,
     modal: ModalBearing,
-) -> Result<(Bearing, usize), Error> {
+) -> Result<(Bearing, usize, String), Error> {
     let interval = scene.interval;
     let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
     let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
-    let damped = scene.film.is_some() || scene.written.solver.mass_damping_per_s > 0.0;
-    let share = match (scene.written.has_edges(), damped) {
-        (false, _) => 1.0,
-        (true, true) => OVER_EDGES,
-        (true, false) => OVER_EDGES_UNDAMPED,
+    let (oiled, damped) = (scene.film.is_some(), scene.written.solver.mass_damping_per_s > 0.0);
+    let (share, why) = match (scene.written.has_edges(), oiled, damped) {
+        (false, ..) => (1.0, ""),
+        (true, true, _) => (OVER_EDGES_OILED, " where rolling elements strike edges through oil"),
+        (true, false, true) => (OVER_EDGES, " where rolling elements strike edges"),
+        (true, false, false) => (OVER_EDGES_UNDAMPED, " where nothing damps the blows of edges"),
     };
-    let most = share * bearing.critical_time_step();
-    if bearing.time_step <= most {
-        return Ok((bearing, steps));
+    let critical = bearing.critical_time_step();
+    if bearing.time_step <= share * critical {
+        let least = steps == LEAST_STEPS && 1e-6 * wanted.step_us > bearing.time_step;
+        let why = if least { "two in a sample" } else { "`model.step_us`" };
+        return Ok((bearing, steps, why.to_owned()));
     }
-    let steps = steps_per_sample(scene, most);
-    Ok((Bearing::new(modal, interval / steps as f64)?, steps))
+    let of_critical = if share < 1.0 { format!("{share} of the") } else { "the".to_owned() };
+    let why = format!("{of_critical} critical {:.2} µs{why}", 1e6 * critical);
+    let steps = steps_per_sample(scene, share * critical);
+    Ok((Bearing::new(modal, interval / steps as f64)?, steps, why))
 }
 
-/// A whole number of steps, none longer than `longest` [s], and two at least: the quasi-static part of a
-/// sensor's acceleration is a difference between two steps of a sample.
+/// The quasi-static part of a sensor's acceleration is a difference between two steps of a sample.
+const LEAST_STEPS: usize = 2;
+
+/// A whole number of steps, none longer than `longest` [s].
 fn steps_per_sample(scene: &ResolvedScene, longest: f64) -> usize {
     // A quotient of 5.000…1 is no sixth step.
-    (1e-6 * scene.written.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize
+    ((1e-6 * scene.written.output.interval_us / longest - 1e-9).ceil() as usize).max(LEAST_STEPS)
 }

@@ -165,6 +165,9 @@ pub struct ReducedInfo {
     pub highest_hz: f64,
     /// Whether the modes were read from an earlier run's.
     pub from_cache: bool,
+    /// What has set the length of the steps, in words; empty in runs of programs that did not record it.
+    #[serde(default)]
+    pub step_of: String,
 }
 
 /// Energy verdict.

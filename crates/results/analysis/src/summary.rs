@@ -128,6 +128,9 @@ quantities! {
         pub steps_planned: u64 = info.steps_planned,
         /// Time step [ns].
         pub time_step_ns: f64 = 1e9 * info.time_step_s,
+        /// What has set the length of the steps of a reduced model.
+        #[serde(default)]
+        pub time_step_of: Option<String> = info.reduced.as_ref().map(|reduced| reduced.step_of.clone()),
         /// Simulated time on record [ms].
         pub simulated_ms: f64 = 1e3 * simulated_s,
         /// Samples that can be used.

@@ -9,6 +9,7 @@ use crate::{
     rollers::block::RacewayContacts,
     row::{lanes, load},
     state::Stored,
+    tally::Sums,
 };
 
 /// How rollers move on a raceway.
@@ -20,6 +21,10 @@ pub(crate) struct Rolling<V> {
     pub(crate) race: V,
     /// Speed of the contacts along the raceway [m/s].
     pub(crate) pace: V,
+    /// Force of both raceways on them towards this one [N].
+    pub(crate) thrust: V,
+    /// By how much the speed of approach exceeds that at which dampers take energy (THEORY §9.4) [m/s].
+    pub(crate) shadow: V,
 }
 
 /// Action of a raceway on rollers: force [N] in the frame of the raceway, and moment [N m].
@@ -29,9 +34,8 @@ pub(crate) struct Pushed<V> {
 }
 
 impl ContactLaw {
-    /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. `heat` grows by twice
-    /// the power against friction and damping [W]; `energy`, where it is computed, by that of penalty and
-    /// springs of friction.
+    /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. Of `sums`
+    /// heat and shadow grow.
     #[inline(always)]
     pub(crate) fn push<S: Simd>(
         &self,
@@ -40,11 +44,11 @@ impl ContactLaw {
         contacts: &mut RacewayContacts,
         at: usize,
         rolling: &Rolling<Vector<S>>,
-        heat: &mut [Vector<S>; 2],
+        sums: &mut Sums<S>,
     ) -> Pushed<Vector<S>> {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
-        let Rolling { relative, spin, race, pace } = *rolling;
+        let Rolling { relative, spin, race, pace, thrust, shadow } = *rolling;
         let normal = Vector::load(simd, &contacts.normal, at);
         let o = contacts.overlap.load(simd, at);
         let d = load(simd, &contacts.d, at);
@@ -65,6 +69,12 @@ impl ContactLaw {
         // The compliance behind the penalty takes its part of the approach.
         let flexibility = Vector::load(simd, &contacts.flexibility, at);
         let part = one / (penalty * length).times_plus(flexibility, one);
+        let stiffness_there = where_it_touches(penalty * length * part);
+        let ahead = all(self.ahead) * thrust;
+        let now = all(6.0 / self.time_step).times_plus(ahead, closing);
+        sums.shadow = (all(self.shadow) * stiffness_there * now).times_plus(now, sums.shadow);
+        sums.shadow = (all(0.25) * ahead).times_plus(thrust, sums.shadow);
+        let normal = stiffness_there.times_plus(ahead, normal);
         let resistance = all(self.damping);
         let lost = resistance * (part * closing).times_plus(length, -(turning * o.first));
         let damping = where_it_touches(lost.max(-normal));
@@ -84,9 +94,9 @@ impl ContactLaw {
         }
         let slip = where_it_touches(slip.min(most).max(-most));
         let drag = -(stiffness * slip);
-        heat[0] = heat[0] - (old_drag + drag) * sliding;
-        heat[1] =
-            (old_damping + damping).times_plus(closing, (old_about + about).times_plus(turning, heat[1]));
+        sums.heat[0] = sums.heat[0] - (old_drag + drag) * sliding;
+        sums.heat[1] = (old_damping + damping)
+            .times_plus(closing - shadow, (old_about + about).times_plus(turning, sums.heat[1]));
         slip.store(&mut contacts.slip, at);
         drag.store(&mut contacts.passive[0], at);
         damping.store(&mut contacts.passive[1], at);
@@ -96,7 +106,8 @@ impl ContactLaw {
         let deflection = Vector::load(simd, &contacts.shift, at);
         let per = all(raceway.outwards()) / Vector::load(simd, &contacts.distance, at);
         let turned = (half * o.skew + deflection * o.across) * per;
-        let along = where_it_touches(penalty * (o.across - turned)) + drag;
+        let across = (o.slope * part).times_plus(ahead, o.across);
+        let along = where_it_touches(penalty * (across - turned)) + drag;
         let against = where_it_touches(normal + damping);
         let area = half.choose_below(touches, o.area, one);
         let pressed = where_it_touches(normal / area * o.moment);

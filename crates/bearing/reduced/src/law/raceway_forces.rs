@@ -7,7 +7,7 @@ use crate::{
     contact::raceway::Raceway,
     drive::Drive,
     law::{ContactLaw, force::Rolling},
-    rollers::block::Block,
+    rollers::block::{Block, RacewayContacts},
     row::{load, store},
     tally::Sums,
 };
@@ -48,8 +48,16 @@ impl ContactLaw {
                 relative = [along.times_plus(d[1], rx), ry - along * d[0]];
             }
             let pace = size(orbit - race) * (distance + arm);
-            let rolling = Rolling { relative, spin, race, pace };
-            let by_outer = self.push(simd, &raceways[0], on_outer, at, &rolling, &mut sums.heat);
+            // The force on the roller, and its growth in the last step, bring its contacts to fourth order.
+            let pressed = |contacts: &RacewayContacts| {
+                Vector::load(simd, &contacts.normal, at) + Vector::load(simd, &contacts.passive[1], at)
+            };
+            let thrust = pressed(on_inner) - pressed(on_outer);
+            let growth = |contacts: &RacewayContacts| Vector::load(simd, &contacts.growth, at);
+            let shadow = all(2.0 * self.ahead / self.time_step) * (growth(on_inner) - growth(on_outer));
+            shadow.store(&mut block.shadow, at);
+            let rolling = Rolling { relative, spin, race, pace, thrust, shadow };
+            let by_outer = self.push(simd, &raceways[0], on_outer, at, &rolling, sums);
             let mut force = by_outer.force;
             if let Some(outer) = outer {
                 force = outer.forth(simd, force);
@@ -70,8 +78,8 @@ impl ContactLaw {
             let [rx, ry] = [along.times_plus(radial[1], velocity[0]), velocity[1] - along * radial[0]];
             let relative = inner.back(simd, [rx, ry]);
             let pace = size((orbit - rate) * (distance - arm));
-            let rolling = Rolling { relative, spin, race: rate, pace };
-            let by_inner = self.push(simd, &raceways[1], on_inner, at, &rolling, &mut sums.heat);
+            let rolling = Rolling { relative, spin, race: rate, pace, thrust: -thrust, shadow: -shadow };
+            let by_inner = self.push(simd, &raceways[1], on_inner, at, &rolling, sums);
             let [fx, fy] = inner.forth(simd, by_inner.force);
             store([fx, fy], &mut block.force[1], at);
             // The drive balances the moment of the roller on the ring.

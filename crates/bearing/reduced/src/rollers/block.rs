@@ -69,6 +69,8 @@ pub(crate) struct Block {
     /// Forces by outer raceway, inner raceway and cage in this step [N], and their moment [N m].
     pub(crate) force: [Rows; 3],
     pub(crate) moment: Row,
+    /// By how much their outward speeds exceed those at which dampers take energy [m/s].
+    pub(crate) shadow: Row,
     /// Forces that neither raceway nor cage takes up [N]: towards smaller displacement of the outer raceway
     /// (THEORY (9.5a)), and by oil that is pushed along.
     pub(crate) downhill: Rows,

@@ -73,7 +73,8 @@ impl Rollers {
                 let slowed = kept.times_plus(v, gain * pull);
                 let change = slowed - v - dt * pull;
                 let mean = half * (slowed + v);
-                sums.damped = (resisted * mean).times_plus(mean, sums.damped);
+                let shadow = Vector::load(simd, &block.shadow, at);
+                sums.damped = (resisted * mean).times_plus(mean - shadow, sums.damped);
                 new = [change.times_plus(rx, new[0]), change.times_plus(ry, new[1]), new[2]];
             }
             if FRAME == ABSOLUTE {

@@ -25,7 +25,7 @@ pub fn on_shaft(scene: &ResolvedScene, runs: Option<&Path>) -> Result<OnShaft, E
     let relaxed = relaxed(&mesh.reduction);
     let centre = [moved[0] + relaxed[0], moved[1] + relaxed[1]];
     let modal = modal_bearing(scene, mesh.reduction)?;
-    let (bearing, _) = in_steps(scene, &wanted(scene), modal.clone())?;
+    let (bearing, ..) = in_steps(scene, &wanted(scene), modal.clone())?;
     Ok(OnShaft { modal, time_step: bearing.time_step, centre })
 }
 
