@@ -124,10 +124,18 @@ fn behaves_a_browser_draws_every_figure_of_an_ensemble() {
 
 /// Knocks of an outer raceway of a 6205 at 1200 rpm, that ring at 3 kHz.
 fn knocks(height: f64) -> Channel {
+    knocks_and_shaft(height, 0.0)
+}
+
+/// The same with a line of the shaft.
+fn knocks_and_shaft(height: f64, shaft: f64) -> Channel {
     let mut noise = Noise::new(7);
     let samples = (0..65_536).map(|n| {
-        let since = (f64::from(n) / 12_800.0).rem_euclid(1.0 / 71.7);
-        noise.uniform() + height * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
+        let time = f64::from(n) / 12_800.0;
+        let since = time.rem_euclid(1.0 / 71.7);
+        let turned = (std::f64::consts::TAU * 20.0 * time).sin();
+        let ringing = (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin();
+        noise.uniform() + height * ringing + shaft * turned
     });
     Channel::held("housing", samples.collect()).in_unit(Some("g".to_owned()))
 }
@@ -173,14 +181,16 @@ fn behaves_the_verdict_is_one_sheet_of_paper() {
         ..Machine::default()
     };
     let of =
-        |height: f64, machine: &Machine| Analysis::of(&knocks(height), 12_800.0, machine).expect("a signal");
-    let (damaged, healthy) = (of(2.0, &machine), of(0.0, &machine));
-    let unknown = of(2.0, &Machine::default());
+        |samples: &Channel, machine: &Machine| Analysis::of(samples, 12_800.0, machine).expect("a signal");
+    let damaged = of(&knocks(2.0), &machine);
+    let (open, healthy) = (of(&knocks(0.0), &machine), of(&knocks_and_shaft(0.0, 2.0), &machine));
+    let unknown = of(&knocks(2.0), &Machine::default());
     let scratch = Scratch::create("sheet");
     let mut folders = Vec::new();
     for (analysis, headline) in [
         (&damaged, "Defect of the outer raceway"),
         (&healthy, "No defect of a raceway"),
+        (&open, "Cannot tell whether the bearing is damaged"),
         (&unknown, "No verdict: speed or bearing is not known"),
     ] {
         let folder = scratch.join(headline);

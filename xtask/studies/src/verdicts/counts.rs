@@ -4,7 +4,7 @@
 use stribeck_analysis::statistic::Share;
 use stribeck_diagnosis::Defect;
 use stribeck_diagnosis::families::sound::LEAST_SOUND;
-use stribeck_report::plot::{Axis, Colour, Figure, Level, Series, Ticks};
+use stribeck_report::plot::{Axis, Colour, Figure, Level, Series};
 
 use super::baseline::{self, Scores};
 use super::records::{Labelled, Part, SETS, UESTC};
