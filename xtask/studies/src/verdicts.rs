@@ -1,10 +1,11 @@
 //! `cargo xtask study verdicts`: measured records of known state through the verdict of `stribeck analyse`:
-//! how often it is right, wrong, undecided, or raises an alarm over a sound bearing, beside a plain envelope
-//! and a kurtogram.
+//! how often it is right, wrong, undecided, raises an alarm over a healthy bearing or says "no defect" of a damaged one,
+//! beside a plain envelope and a kurtogram.
 
 mod baseline;
 mod both_ends;
 mod counts;
+mod reassurance;
 mod records;
 mod trial;
 
@@ -22,7 +23,7 @@ pub(crate) use counts::derive;
 /// Flags of `study verdicts`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Folder of the records: `hit-sm`, `cwru`, `cwru-more`, `uestc`, `mfpt`, `paderborn` and `ims`, those that
+    /// Folder of the records: `hit-sm`, `cwru`, `cwru-more`, `uestc`, `mfpt`, `paderborn`, `ims` and `femto`, those that
     /// are there
     #[arg(value_name = "FOLDER")]
     folder: Option<PathBuf>,
@@ -38,7 +39,8 @@ pub struct Options {
 }
 
 pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result<()> {
-    let records = records::read(options.folder.as_ref().context("give the folder of the records")?)?;
+    let folder = options.folder.as_ref().context("give the folder of the records")?;
+    let records = records::read(folder)?;
     host.say(&format!("{} records", records.len()));
     let cores = stribeck::host::cores();
     let judged = host.each(&records, cores, |record| Judged {
@@ -47,6 +49,11 @@ pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result
         kurtogram: baseline::kurtogram_band(record),
     })?;
     counts::verdicts(rows, &records, &judged);
+    reassurance::conclusions(rows, &records, &judged);
+    let series = records::read_series(folder)?;
+    reassurance::count_series(rows, &series, &host.each(&series, cores, reassurance::judge_series)?);
+    reassurance::ablation(rows, &records, &judged);
+    reassurance::levels(rows, &records, &judged);
     let beside = counts::sound_of_the_rig(&records, &judged);
     counts::beside_sound(
         rows,
@@ -60,6 +67,7 @@ pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result
     both_ends::count(rows, &ends, &host.each(&ends, cores, both_ends::judge)?);
     counts::lengths(rows, &records, &judged);
     if !options.unchanged {
+        rows.value("changed", "changed", "every", f64::from(options.changed_every));
         let some: Vec<Labelled> = records.iter().step_by(options.changed_every as usize).cloned().collect();
         let mut changed = Vec::new();
         let asked = |name: &str| {

@@ -9,6 +9,7 @@ mod series;
 mod simulated;
 mod together;
 mod turning;
+mod windows;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -45,20 +45,20 @@ impl Counts {
 
 type Pair<'a> = (&'a Labelled, &'a Judged);
 
-fn pairs<'a>(records: &'a [Labelled], judged: &'a [Judged]) -> impl Iterator<Item = Pair<'a>> + Clone {
+pub(super) fn pairs<'a>(records: &'a [Labelled], judged: &'a [Judged]) -> impl Iterator<Item = Pair<'a>> + Clone {
     records.iter().zip(judged)
 }
 
-fn class(record: &Labelled) -> &'static str {
+pub(super) fn class(record: &Labelled) -> &'static str {
     match record.truth {
         Some(name) => name.part(),
-        None if record.beside => "sound, the other end damaged",
-        None => "sound",
+        None if record.beside => "healthy, the other end damaged",
+        None => "healthy",
     }
 }
 
-const CLASSES: [&str; 5] =
-    ["the outer raceway", "the inner raceway", "a rolling element", "sound", "sound, the other end damaged"];
+pub(super) const CLASSES: [&str; 5] =
+    ["the outer raceway", "the inner raceway", "a rolling element", "healthy", "healthy, the other end damaged"];
 const PARTS: [(Part, &str); 2] = [(Part::Chosen, "chosen part"), (Part::Quoted, "quoted part")];
 
 /// The least score that no sound record of the chosen part has [dB].
@@ -105,7 +105,7 @@ pub(super) fn verdicts(rows: &mut Rows, records: &[Labelled], judged: &[Judged])
         put(&format!("**all of the {name}, raceways**"), &|r| r.part == part && raceway(r));
         let element = |r: &Labelled| r.truth == Some(Defect::Bsf);
         put(&format!("**all of the {name}, rolling elements**"), &|r| r.part == part && element(r));
-        put(&format!("**all of the {name}, sound**"), &|r| r.part == part && r.truth.is_none());
+        put(&format!("**all of the {name}, healthy**"), &|r| r.part == part && r.truth.is_none());
     }
 }
 
@@ -141,13 +141,13 @@ pub(super) fn beside_sound(rows: &mut Rows, records: &[(&Labelled, Vec<f64>)], o
         if counts.of > 0 {
             let values = [
                 ("n", counts.of),
-                ("sound records", fewest),
+                ("healthy records", fewest),
                 ("right", counts.right),
                 ("wrong", counts.wrong),
                 ("silent", counts.silent),
             ];
             let values = values.map(|(what, n)| (what, n as f64));
-            rows.values("beside sound", &format!("{set}, {what}"), values);
+            rows.values("beside healthy", &format!("{set}, {what}"), values);
         }
     }
 }
@@ -249,7 +249,7 @@ pub(super) fn robustness(rows: &mut Rows, records: &[Labelled], changed: &[Chang
             ("n", faults.of),
             ("right", faults.right),
             ("wrong", faults.wrong),
-            ("sound n", sound.of),
+            ("healthy n", sound.of),
             ("false", sound.wrong),
         ];
         rows.values("robustness", name, values.map(|(what, n)| (what, n as f64)));
@@ -288,7 +288,7 @@ pub(super) fn every_record(rows: &mut Rows, records: &[Labelled], judged: &[Judg
         };
         let claimed: Vec<&str> = outcome.claimed.iter().chain(&outcome.or).map(|d| d.name()).collect();
         rows.word("records", &record.name, "set", &record.set);
-        rows.word("records", &record.name, "truth", record.truth.map_or("sound", Defect::name));
+        rows.word("records", &record.name, "truth", record.truth.map_or("healthy", Defect::name));
         rows.word("records", &record.name, "claimed", &claimed.join("+"));
         rows.word("records", &record.name, "choice", outcome.choice.name());
     }
@@ -299,7 +299,7 @@ pub(crate) fn derive(rows: &mut Rows) {
     for name in rows.variants("verdicts") {
         let count =
             |what: &str| rows.number("verdicts", &name, &format!("verdict {what}")).unwrap_or(0.0) as usize;
-        let good = if name.contains("sound") { count("silent") } else { count("right") };
+        let good = if name.contains("healthy") { count("silent") } else { count("right") };
         let share = Share::of(good, count("n")).map_or("–".to_owned(), |s| {
             let [share, low, high] = [s.share, s.low, s.high].map(|x| decimals(100.0 * x, 0));
             format!("{share} % ({low} to {high})")
