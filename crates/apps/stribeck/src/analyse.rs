@@ -20,6 +20,7 @@ use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, State};
 use stribeck_diagnosis::record::velocity;
 use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
 use stribeck_diagnosis::sources::Component;
+use stribeck_diagnosis::words::beneath::beneath;
 use stribeck_report::{Baseline, write_measured};
 use stribeck_scene::catalogue;
 use stribeck_store::run_dir::check_folder;
@@ -216,10 +217,8 @@ fn default_folder(file: &Path) -> PathBuf {
 fn print(analysis: &Analysis) {
     let findings = &analysis.findings;
     say!("{}", findings.verdict);
+    beneath(findings).iter().for_each(|line| say!("  {line}"));
     print_families(analysis);
-    if let Some(spall) = findings.spall_mm {
-        say!("  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm", spall.value, spall.low, spall.high);
-    }
     for note in &findings.notes {
         say!("  note: {note}");
     }

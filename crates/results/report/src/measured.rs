@@ -12,9 +12,10 @@ use crate::page::{self, charts, document, drawn, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, SeriesFindings, SourcesFindings, course, kurtogram, sound};
 use stribeck_diagnosis::record::quality::Quality;
+use stribeck_diagnosis::words::beneath::beneath;
 use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_diagnosis::words::numbers::significant;
-use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
+use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings, OF_A_SPALL};
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
@@ -73,7 +74,7 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
             }
             p { strong { (findings.verdict) } }
             @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
-            @if let Some(words) = spall_in_words(findings) { p { (words) } }
+            ul class="beneath" { @for line in beneath(findings) { li { (sentence(&line)) } } }
             h2 #evidence { "What the verdict rests on" }
             (evidence)
             h3 { "What would change it" }
@@ -210,16 +211,6 @@ fn cursor(findings: &MeasuredFindings) -> Cursor {
     Cursor { known }
 }
 
-/// The length of a spall with its interval. One event a passage bounds no length: it may be the only one.
-fn spall_in_words(findings: &MeasuredFindings) -> Option<String> {
-    findings.spall_mm.map(|spall| {
-        format!(
-            "Length of the spall: {:.2} mm, 90 % between {:.2} and {:.2} mm.",
-            spall.value, spall.low, spall.high
-        )
-    })
-}
-
 fn families(families: &[Family]) -> Markup {
     let hz = |value: Option<f64>| value.map_or("–".to_owned(), |hz| format!("{hz:.2}"));
     html! {
@@ -312,7 +303,7 @@ fn shown(families: &[Family]) -> Vec<&Family> {
 /// its period; without a family the envelope of the band that knocks most.
 fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figure>, Error> {
     let findings = &analysis.findings;
-    let mut figures = Vec::new();
+    let mut figures: Vec<Figure> = limits(findings).into_iter().collect();
     for family in shown(&findings.families) {
         figures.extend(
             analysis
@@ -323,7 +314,7 @@ fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figu
         figures.extend(synchronous(analysis, family)?.map(|means| period(family, &means)));
     }
     figures.extend(foreign(analysis, baseline));
-    if figures.is_empty() {
+    if figures.iter().all(|figure| figure.id == LIMITS) {
         let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
         figures.extend(most.map(|band| {
             let mut figure = spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0);
@@ -332,6 +323,44 @@ fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figu
         }));
     }
     Ok(figures)
+}
+
+/// Name of the figure of limits.
+const LIMITS: &str = "limits";
+
+/// The weakest impacts of each family that the record would have shown, beside those that it shows.
+fn limits(findings: &MeasuredFindings) -> Option<Figure> {
+    let hz = |f: &Family| f.name.shocks_per_period() * f.measured_hz.unwrap_or(f.expected_hz);
+    let points = |of: fn(&Family) -> Option<f64>| -> (Vec<f64>, Vec<f64>) {
+        findings.families.iter().filter_map(|f| Some((hz(f), of(f).filter(|x| *x > 0.0)?.log10()))).unzip()
+    };
+    let (limit_hz, limit) = points(|f| Some(f.limit?.over_rms));
+    if limit.is_empty() {
+        return None;
+    }
+    let (shown_hz, shown) = points(|f| f.shown_over_rms.filter(|_| f.is_there() || f.claimed));
+    let mut figure = Figure::new(
+        LIMITS,
+        "Impacts that would show, and those that do",
+        Axis::si("Frequency of the impacts", "Hz"),
+        Axis::decades("Peak over the RMS of the record", ""),
+    )
+    .with(Series::listed("would be claimed from here on", Colour::Grey, limit_hz, limit).as_points())
+    .with(Series::listed("what stands there", Colour::Red, shown_hz, shown).as_points())
+    .caption("Impacts of a family that are weaker than its grey point could be in this record without a claim.")
+    .note(format!(
+        "Peaks in the band in which they would be claimed first. Four in five damaged raceways of measured records \
+         exceed {OF_A_SPALL} times the RMS. What stands there is claimed only if its place, its depth and its \
+         neighbours allow it."
+    ));
+    figure.levels.push(Level { y: OF_A_SPALL.log10(), label: "spalls".into(), colour: Colour::Orange });
+    figure.marks = findings
+        .families
+        .iter()
+        .filter(|f| f.limit.is_some())
+        .map(|f| Mark::new(hz(f), f.name.shocks_name(), Colour::Grey, true))
+        .collect();
+    Some(figure)
 }
 
 /// The envelope spectrum in which a comb stands that is no family's, with its harmonics.

@@ -67,7 +67,7 @@ const NEAR: (f64, f64) = (0.25, 5.0);
 
 /// Weakest impacts that a record must be able to show for "no defect", over its root mean square: about four in five of
 /// the 74 measured damaged raceways that are found exceed it. Healthy records of IMS reach 1.78.
-const OF_A_SPALL: f64 = 2.0;
+pub const OF_A_SPALL: f64 = 2.0;
 
 /// Why a record cannot tell whether a raceway is damaged, beside what its families say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

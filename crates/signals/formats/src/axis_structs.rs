@@ -25,7 +25,9 @@ pub(crate) fn told(channels: &mut [Channel], texts: &[(String, String)]) -> Resu
     };
     let mut axes = Vec::new();
     for step in channels.iter().filter(|c| c.len == 1) {
-        let Some(axis) = step.name.strip_suffix(STEP).and_then(|name| name.strip_suffix('.')) else { continue };
+        let Some(axis) = step.name.strip_suffix(STEP).and_then(|name| name.strip_suffix('.')) else {
+            continue;
+        };
         let Some(parent) = axis.strip_suffix(AXIS) else { continue };
         let Some((_, second)) = unit_of(axis).and_then(seconds) else { continue };
         let step_s = number(&step.name)?.filter(|step| *step > 0.0).map(|step| second * step);

@@ -151,7 +151,8 @@ pub fn open(path: &Path) -> Result<Recording> {
             }
         };
         let second = object.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
-        let step = object.increment.filter(|step| *step > 0.0).map(|step| rounded_rate(1.0 / (step * second)));
+        let step =
+            object.increment.filter(|step| *step > 0.0).map(|step| rounded_rate(1.0 / (step * second)));
         let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
         // Where others have a time, one without it has none on their axis.
         let start_s = match object.start_time_s {

@@ -45,7 +45,10 @@ impl Counts {
 
 type Pair<'a> = (&'a Labelled, &'a Judged);
 
-pub(super) fn pairs<'a>(records: &'a [Labelled], judged: &'a [Judged]) -> impl Iterator<Item = Pair<'a>> + Clone {
+pub(super) fn pairs<'a>(
+    records: &'a [Labelled],
+    judged: &'a [Judged],
+) -> impl Iterator<Item = Pair<'a>> + Clone {
     records.iter().zip(judged)
 }
 
@@ -57,8 +60,13 @@ pub(super) fn class(record: &Labelled) -> &'static str {
     }
 }
 
-pub(super) const CLASSES: [&str; 5] =
-    ["the outer raceway", "the inner raceway", "a rolling element", "healthy", "healthy, the other end damaged"];
+pub(super) const CLASSES: [&str; 5] = [
+    "the outer raceway",
+    "the inner raceway",
+    "a rolling element",
+    "healthy",
+    "healthy, the other end damaged",
+];
 const PARTS: [(Part, &str); 2] = [(Part::Chosen, "chosen part"), (Part::Quoted, "quoted part")];
 
 /// The least score that no sound record of the chosen part has [dB].
@@ -205,6 +213,15 @@ pub(super) fn false_alarms(rows: &mut Rows, records: &[Labelled], judged: &[Judg
     for p in [0.1, 0.01, 1e-3, 1e-4, 1e-6] {
         let below = values.iter().filter(|v| **v < p).count();
         rows.value("p_value", &format!("{p}"), "observed", below as f64 / of.max(1) as f64);
+    }
+    for rig in SETS {
+        let of_rig = pairs(records, judged).filter(|(r, _)| r.truth.is_none() && r.set == rig);
+        let all: Vec<f64> = of_rig.filter_map(|(_, j)| j.outcome.as_ref()).flat_map(|o| o.p_values).collect();
+        if !all.is_empty() {
+            let below = |p: f64| all.iter().filter(|v| **v < p).count() as f64;
+            let values = [("n", all.len() as f64), ("below 0.1", below(0.1)), ("below 0.01", below(0.01))];
+            rows.values("p_value by rig", rig, values);
+        }
     }
     let claimed: Vec<f64> = values.iter().map(|p| p.max(1e-12).log10()).collect();
     let observed: Vec<f64> = (0..of).map(|n| ((n as f64 + 0.5) / of as f64).log10()).collect();

@@ -79,7 +79,9 @@ pub(super) fn judge_series(series: &ShortRecords) -> Option<JudgedSeries> {
 /// Conclusions on the series, late and early.
 pub(super) fn count_series(rows: &mut Rows, series: &[ShortRecords], judged: &[Option<JudgedSeries>]) {
     for (is_damaged, name) in [(true, "late, damaged"), (false, "early")] {
-        for (how, of) in [("pooled", (|j| j.pooled) as fn(&JudgedSeries) -> Answer), ("one by one", |j| j.alone)] {
+        for (how, of) in
+            [("pooled", (|j| j.pooled) as fn(&JudgedSeries) -> Answer), ("one by one", |j| j.alone)]
+        {
             let kept = series.iter().zip(judged).filter(|(series, _)| series.is_damaged == is_damaged);
             let answers: Vec<_> = kept.map(|(_, judged)| judged.as_ref().map(of)).collect();
             if !answers.is_empty() {
@@ -105,7 +107,8 @@ pub(super) fn ablation(rows: &mut Rows, records: &[Labelled], judged: &[Judged])
     for rule in rules {
         let [mut right, mut wrong, mut lost, mut alarms] = [0.0; 4];
         for (record, outcome) in &outcomes {
-            let [before, after] = [outcome.standing(record.truth), outcome.without(rule).standing(record.truth)];
+            let [before, after] =
+                [outcome.standing(record.truth), outcome.without(rule).standing(record.truth)];
             match (record.truth, before, after) {
                 (_, before, after) if before == after => {}
                 (None, ..) => alarms += 1.0,
@@ -152,5 +155,30 @@ pub(super) fn levels(rows: &mut Rows, records: &[Labelled], judged: &[Judged]) {
             ("90 %", quantile(0.9)),
         ];
         rows.values("levels", name.part(), values);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use stribeck_diagnosis::FOUND;
+
+    use crate::Rows;
+
+    /// The shares that verdicts quote are those of the part on which no threshold was chosen, to the digits that they
+    /// have.
+    #[test]
+    fn golden_quoted_shares_are_those_of_the_kept_table() {
+        const DIGITS: f64 = 0.005;
+        let rows = Rows::read(&crate::results().join("verdicts.csv")).expect("the kept table");
+        for (part, quoted) in ["raceways", "rolling elements"].iter().zip(FOUND) {
+            let of =
+                |what: &str| rows.number("verdicts", &format!("**all of the quoted part, {part}**"), what);
+            let share =
+                of("verdict right").zip(of("verdict n")).map(|(right, n)| right / n).expect("a share");
+            assert!(
+                (share - quoted).abs() <= DIGITS,
+                "{part}: {share} in the table, {quoted} in the verdict"
+            );
+        }
     }
 }

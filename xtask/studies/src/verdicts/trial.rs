@@ -156,7 +156,8 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
     };
     let scores = of(score, f64::NEG_INFINITY);
     let claims = families.iter().filter(|f| f.claimed);
-    let alone = families.iter().filter_map(|f| Some((f.name, <[_; 1]>::try_from(f.refused_by.as_slice()).ok()?[0])));
+    let alone =
+        families.iter().filter_map(|f| Some((f.name, <[_; 1]>::try_from(f.refused_by.as_slice()).ok()?[0])));
     Some(Outcome {
         claimed: claims.clone().map(|f| f.name).collect(),
         or: claims.filter_map(|f| f.not_told_apart_from).collect(),

@@ -17,7 +17,8 @@ const OVER: f64 = 4.0;
 
 /// Refuses a table of which neighbours in a row are correlated and neighbours in a column are not.
 pub(super) fn refuse(recording: &Recording, channels: &[&Channel]) -> Result<()> {
-    let Some(first) = channels.first().filter(|first| channels.len() >= LEAST && first.len >= LEAST as u64) else {
+    let Some(first) = channels.first().filter(|first| channels.len() >= LEAST && first.len >= LEAST as u64)
+    else {
         return Ok(());
     };
     let kept = channels.iter().take(PAIRS + NEIGHBOURS).map(|channel| beginning(channel));
@@ -57,12 +58,10 @@ fn beginning(channel: &Channel) -> Result<Vec<f64>> {
 
 /// The largest correlations of near samples of one channel, and of one sample of near channels.
 fn correlations(channels: &[Vec<f64>]) -> (f64, f64) {
-    let along = |by: usize| {
-        correlation(channels.iter().flat_map(|x| x.iter().zip(x.get(by..).unwrap_or_default())))
-    };
-    let across = |by: usize| {
-        correlation(channels.iter().zip(&channels[by..]).flat_map(|(a, b)| a.iter().zip(b)))
-    };
+    let along =
+        |by: usize| correlation(channels.iter().flat_map(|x| x.iter().zip(x.get(by..).unwrap_or_default())));
+    let across =
+        |by: usize| correlation(channels.iter().zip(&channels[by..]).flat_map(|(a, b)| a.iter().zip(b)));
     let largest = |of: &dyn Fn(usize) -> f64| (1..=NEIGHBOURS).map(|by| of(by).abs()).fold(0.0, f64::max);
     (largest(&along), largest(&across))
 }
@@ -70,7 +69,8 @@ fn correlations(channels: &[Vec<f64>]) -> (f64, f64) {
 /// The correlation of pairs of samples; 0 of silent ones.
 fn correlation<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
     let sums = pairs.filter(|(a, b)| a.is_finite() && b.is_finite());
-    let (ab, aa, bb) = sums.fold((0.0, 0.0, 0.0), |(ab, aa, bb), (a, b)| (ab + a * b, aa + a * a, bb + b * b));
+    let (ab, aa, bb) =
+        sums.fold((0.0, 0.0, 0.0), |(ab, aa, bb), (a, b)| (ab + a * b, aa + a * a, bb + b * b));
     if aa > 0.0 && bb > 0.0 { ab / f64::sqrt(aa * bb) } else { 0.0 }
 }
 
@@ -92,9 +92,17 @@ mod tests {
                 next
             })
             .collect();
-        let recording = |channels: Vec<Channel>| Recording { path: "a.npy".into(), format: "npy", channels, notes: vec![] };
-        let refused = |recording: &Recording| refuse(recording, &recording.channels.iter().collect::<Vec<_>>()).is_err();
-        let column = |k: usize| Channel::held(format!("a[{k}]"), signal.iter().skip(k).step_by(64).copied().collect());
+        let recording = |channels: Vec<Channel>| Recording {
+            path: "a.npy".into(),
+            format: "npy",
+            channels,
+            notes: vec![],
+        };
+        let refused = |recording: &Recording| {
+            refuse(recording, &recording.channels.iter().collect::<Vec<_>>()).is_err()
+        };
+        let column =
+            |k: usize| Channel::held(format!("a[{k}]"), signal.iter().skip(k).step_by(64).copied().collect());
         assert!(refused(&recording((0..64).map(column).collect())));
         let sensor = |k: usize| Channel::held(format!("a[{k}]"), signal[k..k + 1000].to_vec());
         assert!(!refused(&recording((0..64).map(sensor).collect())));

@@ -3,7 +3,7 @@
 use stribeck_dsp::{BandEnvelope, Whitened};
 
 use crate::families::controls::MOST_AS_HIGH;
-use crate::families::family::{Family, Reason};
+use crate::families::family::{Family, Reason, SOUND_DEPTHS};
 use crate::families::limits::{ALPHA, KNOCK, KNOCK_OF_ELEMENT};
 use crate::families::sidebands::is_modulated;
 use crate::families::sound::BesideSound;
@@ -123,7 +123,8 @@ pub(crate) fn without_sidebands_of_elements(
 ) -> Vec<Family> {
     let turns_away = |family: &Family| {
         let hz = family.measured_hz.filter(|_| matches!(family.name, Defect::Bpfo | Defect::Bpfi))?;
-        let (_, spectrum) = bands.iter().find(|(band, _)| family.band_hz == Some((band.low_hz, band.high_hz)))?;
+        let (_, spectrum) =
+            bands.iter().find(|(band, _)| family.band_hz == Some((band.low_hz, band.high_hz)))?;
         let side = if element_hz > hz { 1.0 } else { -1.0 };
         let stands = |turns: i32| {
             let at = |slip: f64| spectrum.at(hz + side * f64::from(turns) * cage_hz * (1.0 + slip));
@@ -134,7 +135,8 @@ pub(crate) fn without_sidebands_of_elements(
         let turns = (1..=CAGES).find(|turns| (centre(*turns) / element_hz - 1.0).abs() < SLIP)?;
         (1..=turns).all(stands).then_some(turns)
     };
-    let of = |family: Family| match turns_away(&family) {
+    let of = |family: Family| {
+        match turns_away(&family) {
         Some(turns) => family.refused(
             "sideband of an element",
             format!(
@@ -143,6 +145,7 @@ pub(crate) fn without_sidebands_of_elements(
             ),
         ),
         None => family,
+    }
     };
     families.into_iter().map(of).collect()
 }
@@ -244,8 +247,11 @@ fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<Strin
     let knock = if family.name == Defect::Bsf && case.modulated { KNOCK_OF_ELEMENT } else { KNOCK };
     (depth < knock && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but the power of its band varies by {:.0} % of its mean only, as in sound bearings",
-            100.0 * depth
+            "it is there, but the power of its band varies by {:.0} % of its mean, where impacts vary it by {:.0} %; \
+             families of healthy bearings reach that with a probability of {}",
+            100.0 * depth,
+            100.0 * knock,
+            chance((-SOUND_DEPTHS * depth).exp())
         )
     })
 }
@@ -253,7 +259,7 @@ fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<Strin
 fn sound_bearings_show_as_much(family: &Family, case: &Case<'_>) -> Option<String> {
     (family.p_value >= ALPHA && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but sound bearings show as much with a probability of {}",
+            "it is there, but healthy bearings show as much with a probability of {}",
             probability(family.p_value)
         )
     })
@@ -293,7 +299,7 @@ fn something_else_knocks_louder(family: &Family, case: &Case<'_>) -> Option<Stri
     (family.p_value >= BESIDE_OTHERS && case.beyond_sound(family).is_none()).then(|| {
         format!(
             "it is there, but something that is no family of this bearing knocks louder in another band, at \
-             {:.3} times the shaft, and sound bearings show as much with a probability of {}",
+             {:.3} times the shaft, and healthy bearings show as much with a probability of {}",
             other.order,
             probability(family.p_value)
         )

@@ -19,7 +19,7 @@ use stribeck_theory::catalogue::{CatalogueBearing, DefectOrders, Element};
 use crate::families::candidate::{Candidate, Standing, search};
 use crate::families::comb_at_half::comb_at_half;
 use crate::families::controls::{controls, part_as_high, rank};
-use crate::families::family::{Family, Reason};
+use crate::families::family::Family;
 use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
 use crate::families::power;
