@@ -331,18 +331,18 @@ const LIMITS: &str = "limits";
 /// The weakest impacts of each family that the record would have shown, beside those that it shows.
 fn limits(findings: &MeasuredFindings) -> Option<Figure> {
     let hz = |f: &Family| f.name.shocks_per_period() * f.measured_hz.unwrap_or(f.expected_hz);
+    let mut families: Vec<&Family> = findings.families.iter().collect();
+    families.sort_by(|a, b| hz(a).total_cmp(&hz(b)));
     let points = |of: fn(&Family) -> Option<f64>| -> (Vec<f64>, Vec<f64>) {
-        findings.families.iter().filter_map(|f| Some((hz(f), of(f).filter(|x| *x > 0.0)?.log10()))).unzip()
+        families.iter().filter_map(|f| Some((hz(f), of(f).filter(|x| *x > 0.0)?.log10()))).unzip()
     };
     let (limit_hz, limit) = points(|f| Some(f.limit?.over_rms));
-    if limit.is_empty() {
-        return None;
-    }
+    let highest_hz = *limit_hz.last()?;
     let (shown_hz, shown) = points(|f| f.shown_over_rms.filter(|_| f.is_there() || f.claimed));
     let mut figure = Figure::new(
         LIMITS,
         "Impacts that would show, and those that do",
-        Axis::si("Frequency of the impacts", "Hz"),
+        Axis::si("Frequency of the impacts", "Hz").over(0.0, 1.2 * highest_hz),
         Axis::decades("Peak over the RMS of the record", ""),
     )
     .with(Series::listed("would be claimed from here on", Colour::Grey, limit_hz, limit).as_points())
@@ -354,8 +354,7 @@ fn limits(findings: &MeasuredFindings) -> Option<Figure> {
          neighbours allow it."
     ));
     figure.levels.push(Level { y: OF_A_SPALL.log10(), label: "spalls".into(), colour: Colour::Orange });
-    figure.marks = findings
-        .families
+    figure.marks = families
         .iter()
         .filter(|f| f.limit.is_some())
         .map(|f| Mark::new(hz(f), f.name.shocks_name(), Colour::Grey, true))

@@ -13,7 +13,7 @@ pub fn beneath(findings: &MeasuredFindings) -> Vec<String> {
     let mut lines: Vec<String> = claimed
         .iter()
         .map(|f| {
-            format!("probability that a healthy bearing shows as much of {}: {}", f.name, chance(f.p_value))
+            format!("{}: a healthy bearing shows as much with a probability of {}", f.name, chance(f.p_value))
         })
         .collect();
     lines.extend(nearest.map(|f| format!("nearest to a claim: {}, false alarm {}", f.name, f.false_alarm())));
@@ -26,22 +26,20 @@ pub fn beneath(findings: &MeasuredFindings) -> Vec<String> {
             None => "length of the spall: not determined".to_owned(),
         });
     }
-    let unit = findings.unit.as_deref().unwrap_or("of its unit");
+    let unit = findings.unit.as_deref();
     let limits = findings.families.iter().filter_map(|f| Some((f.name.shocks_name(), f.limit?)));
     let limits: Vec<String> =
         limits.map(|(name, limit)| format!("{name} {}", in_words(limit, unit))).collect();
     if !limits.is_empty() {
-        lines.push(format!("the record would have shown impacts above: {}", limits.join("; ")));
+        lines
+            .push(format!("impacts that the record would have shown, from a peak of: {}", limits.join("; ")));
     }
     lines
 }
 
-/// A limit with its band.
-fn in_words(Limit { peak, over_rms, band_hz: (low_hz, high_hz) }: Limit, unit: &str) -> String {
+/// A limit with its band; without a unit over the root mean square alone.
+fn in_words(Limit { peak, over_rms, band_hz: (low_hz, high_hz) }: Limit, unit: Option<&str>) -> String {
     let [low, high] = [low_hz, high_hz].map(|hz| significant(1e-3 * hz, 2));
-    format!(
-        "{} {unit}, {} times the RMS ({low} to {high} kHz)",
-        significant(peak, 2),
-        significant(over_rms, 2)
-    )
+    let peak = unit.map_or(String::new(), |unit| format!("{} {unit}, ", significant(peak, 2)));
+    format!("{peak}{} times the RMS ({low} to {high} kHz)", significant(over_rms, 2))
 }
