@@ -31,6 +31,11 @@ impl Rows {
         values.into_iter().for_each(|(quantity, value)| self.value(table, variant, quantity.as_ref(), value));
     }
 
+    /// Takes the rows of these tables out.
+    pub(crate) fn clear(&mut self, tables: &[&str]) {
+        self.0.retain(|[table, ..]| !tables.contains(&table.as_str()));
+    }
+
     /// The value as it is written; `None` where there is no such row.
     pub(crate) fn get(&self, table: &str, variant: &str, quantity: &str) -> Option<&str> {
         let found = self.0.iter().find(|[t, v, q, _]| t == table && v == variant && q == quantity);

@@ -9,6 +9,7 @@ mod series;
 mod simulated;
 mod together;
 mod turning;
+mod windows;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -19,6 +20,7 @@ use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, State};
 use stribeck_diagnosis::record::velocity;
 use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
 use stribeck_diagnosis::sources::Component;
+use stribeck_diagnosis::words::brief::Brief;
 use stribeck_report::{Baseline, SHEET, write_brief, write_measured};
 use stribeck_scene::catalogue;
 use stribeck_store::run_dir::check_folder;
@@ -247,10 +249,11 @@ fn default_folder(file: &Path) -> PathBuf {
 fn print(analysis: &Analysis) {
     let findings = &analysis.findings;
     say!("{}", findings.verdict);
+    let Brief { sure, length, unseen, .. } = Brief::of(findings);
+    say!("  {sure}");
+    length.iter().for_each(|length| say!("  length of the spall: {length}"));
+    say!("  not seen: {unseen}");
     print_families(analysis);
-    if let Some(spall) = findings.spall_mm {
-        say!("  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm", spall.value, spall.low, spall.high);
-    }
     for note in &findings.notes {
         say!("  note: {note}");
     }

@@ -16,7 +16,7 @@ use stribeck_diagnosis::record::quality::Quality;
 use stribeck_diagnosis::words::brief::Brief;
 use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_diagnosis::words::numbers::significant;
-use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
+use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings, OF_A_SPALL};
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
@@ -323,7 +323,42 @@ pub(crate) fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Resu
             behind(figure, band, findings, baseline)
         }));
     }
+    figures.extend(limits(findings));
     Ok(figures)
+}
+
+/// The weakest impacts of each family that the record would have shown, beside those that it shows.
+fn limits(findings: &MeasuredFindings) -> Option<Figure> {
+    let hz = |f: &Family| f.name.shocks_per_period() * f.measured_hz.unwrap_or(f.expected_hz);
+    let mut families: Vec<&Family> = findings.families.iter().collect();
+    families.sort_by(|a, b| hz(a).total_cmp(&hz(b)));
+    let points = |of: fn(&Family) -> Option<f64>| -> (Vec<f64>, Vec<f64>) {
+        families.iter().filter_map(|f| Some((hz(f), of(f).filter(|x| *x > 0.0)?.log10()))).unzip()
+    };
+    let (limit_hz, limit) = points(|f| Some(f.limit?.over_rms));
+    let highest_hz = *limit_hz.last()?;
+    let (shown_hz, shown) = points(|f| f.shown_over_rms.filter(|_| f.is_there() || f.claimed));
+    let mut figure = Figure::new(
+        "limits",
+        "Impacts that would show, and those that do",
+        Axis::si("Frequency of the impacts", "Hz").over(0.0, 1.2 * highest_hz),
+        Axis::decades("Peak over the RMS of the record", ""),
+    )
+    .with(Series::listed("would be claimed from here on", Colour::Grey, limit_hz, limit).as_points())
+    .with(Series::listed("what stands there", Colour::Red, shown_hz, shown).as_points())
+    .caption("Impacts of a family that are weaker than its grey point could be in this record without a claim.")
+    .note(format!(
+        "Peaks in the band in which they would be claimed first. Four in five damaged raceways of measured records \
+         exceed {OF_A_SPALL} times the RMS. What stands there is claimed only if its place, its depth and its \
+         neighbours allow it."
+    ));
+    figure.levels.push(Level { y: OF_A_SPALL.log10(), label: "spalls".into(), colour: Colour::Orange });
+    figure.marks = families
+        .iter()
+        .filter(|f| f.limit.is_some())
+        .map(|f| Mark::new(hz(f), f.name.shocks_name(), Colour::Grey, true))
+        .collect();
+    Some(figure)
 }
 
 /// Name of the figure of a comb that is no family's.

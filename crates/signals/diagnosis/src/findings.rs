@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::conclusion::Doubt;
+use crate::conclusion::{Doubt, Open, open};
 use crate::quantities;
 use crate::record::quality::Quality;
 use crate::record::zone;
@@ -91,9 +91,7 @@ impl MeasuredFindings {
         if self.is_no_signal() {
             return;
         }
-        let is_spoilt = self.quality.iter().any(|found| found.kind.spoils_verdicts());
-        let turns = self.duration_s * self.speed_rpm.unwrap_or(0.0) / 60.0;
-        let doubt = Doubt::of(is_spoilt, self.speed_uncertainty_rpm.is_some(), turns);
+        let doubt = self.doubt();
         self.conclusion = Conclusion::of(&self.families, self.unexplained.as_ref(), doubt);
         let told = Told {
             doubt,
@@ -103,6 +101,17 @@ impl MeasuredFindings {
             rate_hz: self.rate_hz,
         };
         self.verdict = conclude(&self.families, self.unexplained.as_ref(), told);
+    }
+
+    fn doubt(&self) -> Option<Doubt> {
+        let is_spoilt = self.quality.iter().any(|found| found.kind.spoils_verdicts());
+        let turns = self.duration_s * self.speed_rpm.unwrap_or(0.0) / 60.0;
+        Doubt::of(is_spoilt, self.speed_uncertainty_rpm.is_some(), turns)
+    }
+
+    /// Names of all rules by which it cannot be said that no raceway is damaged; nothing where that is said.
+    pub fn open(&self) -> Vec<&'static str> {
+        open(&self.families, self.unexplained.as_ref(), self.doubt()).iter().map(Open::name).collect()
     }
 
     /// The unit of the channel; `None` where it is unknown, or not an acceleration.

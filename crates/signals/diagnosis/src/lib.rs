@@ -55,7 +55,7 @@ pub mod words;
 mod error;
 
 pub use analysis::Analysis;
-pub use conclusion::{Answer, Concluded, Conclusion, FOUND};
+pub use conclusion::{Answer, Concluded, Conclusion, FOUND, OF_A_SPALL};
 pub use error::Error;
 pub use families::defect::Defect;
 pub use families::family::{Family, Reason};

@@ -162,7 +162,7 @@ contents! {
     Number: f64;
     Whole: u64, u32, i32, usize;
     Flag: bool;
-    Text: String, Answer, Defect, Reason, Group, Foundation, Zone, quality::Kind, alarm::Quantity, alarm::State;
+    Text: String, &'static str, Answer, Defect, Reason, Group, Foundation, Zone, quality::Kind, alarm::Quantity, alarm::State;
 }
 
 impl<T: Part> Part for Option<T> {

@@ -457,7 +457,11 @@ fn growth_in_words(growth: &Growth) -> String {
     let Growth { from, from_mm, to, to_mm, has_grown } = growth;
     let of = |mm: &Interval| format!("{:.2} mm ({:.2} to {:.2})", mm.value, mm.low, mm.high);
     let [first, last] = [from_mm, to_mm].map(of);
-    let grown = if *has_grown { "" } else { "; the intervals overlap, so that growth is not certain" };
+    let grown = if *has_grown {
+        ""
+    } else {
+        "; the load's error, which both intervals contain, moves both lengths alike"
+    };
     format!(" The spall is {first} long in record {from} and {last} in record {to}{grown}.")
 }
 

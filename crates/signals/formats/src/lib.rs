@@ -25,6 +25,7 @@
 //! Channels of time are recognised by their steady rise, and the sample rate follows from them where the file
 //! does not state it. Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
+mod axis_structs;
 mod clock_columns;
 mod curve;
 mod hdf5_chunks;

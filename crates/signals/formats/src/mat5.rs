@@ -13,7 +13,7 @@ use stribeck_dsp::channel::memory;
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::{Strided, held_from};
-use crate::{Channel, Error, Recording, Result, shape};
+use crate::{Channel, Error, Recording, Result, axis_structs, shape};
 
 const FORMAT: &str = "MATLAB 5";
 const HEADER: u64 = 128;
@@ -53,7 +53,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let mut order = [0; 2];
     file.read_exact(&mut order).map_err(io)?;
     let big_endian = order == *b"MI";
-    let mut found = Found { big_endian, channels: Vec::new(), notes: Vec::new() };
+    let mut found = Found { big_endian, channels: Vec::new(), texts: Vec::new(), notes: Vec::new() };
     let (mut at, mut asked) = (HEADER, 0_u64);
     while at + 8 <= size {
         file.seek(SeekFrom::Start(at)).map_err(io)?;
@@ -112,7 +112,9 @@ pub fn open(path: &Path) -> Result<Recording> {
         found.channels.retain(|channel| at_all.next() < Some(before) || !channel.name.is_empty());
         at += 8 + length;
     }
-    Ok(Recording { path: path.to_owned(), format: FORMAT, channels: found.channels, notes: found.notes })
+    let Found { mut channels, texts, notes, .. } = found;
+    axis_structs::told(&mut channels, &texts)?;
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
 /// Writes each channel as a column of doubles, uncompressed, its name made valid; `rate_hz` beside them when
@@ -205,6 +207,8 @@ struct Element<'a> {
 struct Found {
     big_endian: bool,
     channels: Vec<Channel>,
+    /// Texts, by their names.
+    texts: Vec<(String, String)>,
     notes: Vec<String>,
 }
 
@@ -337,6 +341,19 @@ impl Found {
         Ok(Some(Plain { name, rows, columns, number, start: at }))
     }
 
+    /// A row of characters: in UTF-8, or a number of 16 bits each.
+    fn characters(&self, data: &Element<'_>) -> Option<String> {
+        if data.kind == 16 || data.kind == 1 || data.kind == 2 {
+            return String::from_utf8(data.data.to_vec()).ok();
+        }
+        let of = |two: &[u8]| {
+            let two = two.try_into().unwrap_or_default();
+            if self.big_endian { u16::from_be_bytes(two) } else { u16::from_le_bytes(two) }
+        };
+        (data.kind == 4 || data.kind == 17)
+            .then(|| String::from_utf16(&data.data.chunks_exact(2).map(of).collect::<Vec<u16>>()).ok())?
+    }
+
     /// Adds the channels of an array in memory.
     fn matrix(&mut self, bytes: &[u8], parent: &str, depth: usize) -> Parsed<()> {
         if bytes.is_empty() {
@@ -386,7 +403,11 @@ impl Found {
                 }
                 Ok(())
             }
-            CHAR => Ok(()),
+            CHAR => {
+                let (data, _) = self.element(head.rest)?;
+                self.texts.extend(self.characters(&data).map(|text| (name, text)));
+                Ok(())
+            }
             OPAQUE => {
                 let (class, _) = self.element(head.rest).and_then(|(_, rest)| self.element(rest))?;
                 let class = String::from_utf8_lossy(class.data);

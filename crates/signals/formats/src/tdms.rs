@@ -14,7 +14,7 @@ use crate::curve::along;
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::{Pieces, Strided};
-use crate::units::seconds;
+use crate::units::{rounded_rate, seconds};
 use crate::{Error, Recording, Result, units};
 
 const FORMAT: &str = "TDMS";
@@ -151,7 +151,8 @@ pub fn open(path: &Path) -> Result<Recording> {
             }
         };
         let second = object.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
-        let step = object.increment.filter(|step| *step > 0.0).map(|step| rounded(1.0 / (step * second)));
+        let step =
+            object.increment.filter(|step| *step > 0.0).map(|step| rounded_rate(1.0 / (step * second)));
         let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
         // Where others have a time, one without it has none on their axis.
         let start_s = match object.start_time_s {
@@ -372,10 +373,4 @@ fn width(kind: u32) -> Option<usize> {
 /// `/'group'/'channel'` as `group/channel`.
 fn spoken(path: &str) -> String {
     path.trim_start_matches('/').trim_matches('\'').replace("'/'", "/").replace("''", "'")
-}
-
-/// A rate is a round number more often than the digits of an increment are exact.
-fn rounded(hz: f64) -> f64 {
-    let round = (hz * 10.0).round() / 10.0;
-    if (hz / round - 1.0).abs() < 1e-9 { round } else { hz }
 }

@@ -147,6 +147,12 @@ pub(crate) enum Unit {
     Unsaid,
 }
 
+/// A rate is a round number more often than the digits of an increment are exact.
+pub(crate) fn rounded_rate(hz: f64) -> f64 {
+    let round = (hz * 10.0).round() / 10.0;
+    if (hz / round - 1.0).abs() < 1e-9 { round } else { hz }
+}
+
 /// A unit without brackets, in small letters.
 fn bare(unit: &str) -> String {
     unit.trim_matches(|c: char| c.is_whitespace() || "[](){}<>\"'.,;:".contains(c)).to_lowercase()

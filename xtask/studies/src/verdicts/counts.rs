@@ -45,20 +45,28 @@ impl Counts {
 
 type Pair<'a> = (&'a Labelled, &'a Judged);
 
-fn pairs<'a>(records: &'a [Labelled], judged: &'a [Judged]) -> impl Iterator<Item = Pair<'a>> + Clone {
+pub(super) fn pairs<'a>(
+    records: &'a [Labelled],
+    judged: &'a [Judged],
+) -> impl Iterator<Item = Pair<'a>> + Clone {
     records.iter().zip(judged)
 }
 
-fn class(record: &Labelled) -> &'static str {
+pub(super) fn class(record: &Labelled) -> &'static str {
     match record.truth {
         Some(name) => name.part(),
-        None if record.beside => "sound, the other end damaged",
-        None => "sound",
+        None if record.beside => "healthy, the other end damaged",
+        None => "healthy",
     }
 }
 
-const CLASSES: [&str; 5] =
-    ["the outer raceway", "the inner raceway", "a rolling element", "sound", "sound, the other end damaged"];
+pub(super) const CLASSES: [&str; 5] = [
+    "the outer raceway",
+    "the inner raceway",
+    "a rolling element",
+    "healthy",
+    "healthy, the other end damaged",
+];
 const PARTS: [(Part, &str); 2] = [(Part::Chosen, "chosen part"), (Part::Quoted, "quoted part")];
 
 /// The least score that no sound record of the chosen part has [dB].
@@ -105,7 +113,7 @@ pub(super) fn verdicts(rows: &mut Rows, records: &[Labelled], judged: &[Judged])
         put(&format!("**all of the {name}, raceways**"), &|r| r.part == part && raceway(r));
         let element = |r: &Labelled| r.truth == Some(Defect::Bsf);
         put(&format!("**all of the {name}, rolling elements**"), &|r| r.part == part && element(r));
-        put(&format!("**all of the {name}, sound**"), &|r| r.part == part && r.truth.is_none());
+        put(&format!("**all of the {name}, healthy**"), &|r| r.part == part && r.truth.is_none());
     }
 }
 
@@ -141,13 +149,13 @@ pub(super) fn beside_sound(rows: &mut Rows, records: &[(&Labelled, Vec<f64>)], o
         if counts.of > 0 {
             let values = [
                 ("n", counts.of),
-                ("sound records", fewest),
+                ("healthy records", fewest),
                 ("right", counts.right),
                 ("wrong", counts.wrong),
                 ("silent", counts.silent),
             ];
             let values = values.map(|(what, n)| (what, n as f64));
-            rows.values("beside sound", &format!("{set}, {what}"), values);
+            rows.values("beside healthy", &format!("{set}, {what}"), values);
         }
     }
 }
@@ -206,6 +214,15 @@ pub(super) fn false_alarms(rows: &mut Rows, records: &[Labelled], judged: &[Judg
         let below = values.iter().filter(|v| **v < p).count();
         rows.value("p_value", &format!("{p}"), "observed", below as f64 / of.max(1) as f64);
     }
+    for rig in SETS {
+        let of_rig = pairs(records, judged).filter(|(r, _)| r.truth.is_none() && r.set == rig);
+        let all: Vec<f64> = of_rig.filter_map(|(_, j)| j.outcome.as_ref()).flat_map(|o| o.p_values).collect();
+        if !all.is_empty() {
+            let below = |p: f64| all.iter().filter(|v| **v < p).count() as f64;
+            let values = [("n", all.len() as f64), ("below 0.1", below(0.1)), ("below 0.01", below(0.01))];
+            rows.values("p_value by rig", rig, values);
+        }
+    }
     let claimed: Vec<f64> = values.iter().map(|p| p.max(1e-12).log10()).collect();
     let observed: Vec<f64> = (0..of).map(|n| ((n as f64 + 0.5) / of as f64).log10()).collect();
     let axis = |label: &str| Axis::decades(label, "");
@@ -248,7 +265,7 @@ pub(super) fn robustness(rows: &mut Rows, records: &[Labelled], changed: &[Chang
             ("n", faults.of),
             ("right", faults.right),
             ("wrong", faults.wrong),
-            ("sound n", sound.of),
+            ("healthy n", sound.of),
             ("false", sound.wrong),
         ];
         rows.values("robustness", name, values.map(|(what, n)| (what, n as f64)));
@@ -287,7 +304,7 @@ pub(super) fn every_record(rows: &mut Rows, records: &[Labelled], judged: &[Judg
         };
         let claimed: Vec<&str> = outcome.claimed.iter().chain(&outcome.or).map(|d| d.name()).collect();
         rows.word("records", &record.name, "set", &record.set);
-        rows.word("records", &record.name, "truth", record.truth.map_or("sound", Defect::name));
+        rows.word("records", &record.name, "truth", record.truth.map_or("healthy", Defect::name));
         rows.word("records", &record.name, "claimed", &claimed.join("+"));
         rows.word("records", &record.name, "choice", outcome.choice.name());
     }
@@ -298,7 +315,7 @@ pub(crate) fn derive(rows: &mut Rows) {
     for name in rows.variants("verdicts") {
         let count =
             |what: &str| rows.number("verdicts", &name, &format!("verdict {what}")).unwrap_or(0.0) as usize;
-        let good = if name.contains("sound") { count("silent") } else { count("right") };
+        let good = if name.contains("healthy") { count("silent") } else { count("right") };
         let share = Share::of(good, count("n")).map_or("–".to_owned(), |s| {
             let [share, low, high] = [s.share, s.low, s.high].map(|x| decimals(100.0 * x, 0));
             format!("{share} % ({low} to {high})")

@@ -45,6 +45,7 @@ pub(super) struct Labelled {
 struct List {
     sets: Vec<Set>,
     records: Vec<Entry>,
+    series: Vec<SeriesEntry>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -60,6 +61,25 @@ struct Set {
 /// length of the defect.
 type Entry = (String, String, String, usize, Option<String>, bool, Option<f64>, Option<f64>);
 
+/// Beginning of the files of a series of records, speed [1/min], whether the bearing is damaged.
+type SeriesEntry = (String, f64, bool);
+
+/// Records of a tenth of a second of one bearing, one behind the other.
+#[derive(Debug, Clone)]
+pub(super) struct ShortRecords {
+    /// Beginning of their files.
+    pub(super) name: String,
+    pub(super) speed_rpm: f64,
+    pub(super) is_damaged: bool,
+    pub(super) records: Vec<Vec<f64>>,
+}
+
+/// FEMTO: bearing, sample rate [Hz] and channel of the series.
+pub(super) const SHORT_BEARING: &str = "elements=13, diameter_mm=3.5, pitch_mm=25.6";
+pub(super) const SHORT_RATE_HZ: f64 = 25_600.0;
+const SHORT_CHANNEL: &str = "h";
+const SHORT_RECORDS: usize = 8;
+
 pub(super) const SETS: [&str; 8] = [
     "HIT-SM, 6205",
     "CWRU drive end, 6205",
@@ -72,11 +92,33 @@ pub(super) const SETS: [&str; 8] = [
 ];
 pub(super) const UESTC: &str = SETS[3];
 
-/// All records of the list that are below `folder`.
-pub(super) fn read(folder: &Path) -> Result<Vec<Labelled>> {
+fn list() -> Result<List> {
     let path = crate::package().join("data/verdicts.ron");
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    let list: List = ron::from_str(&text).with_context(|| path.display().to_string())?;
+    ron::from_str(&text).with_context(|| path.display().to_string())
+}
+
+/// All series of the list that are below `folder`.
+pub(super) fn read_series(folder: &Path) -> Result<Vec<ShortRecords>> {
+    let mut series = Vec::new();
+    for (name, speed_rpm, is_damaged) in list()?.series {
+        let files = (1..=SHORT_RECORDS).map(|n| folder.join(format!("{name}_{n}.npz")));
+        let records = files.filter(|file| file.exists()).map(|file| {
+            let recording = Recording::open(&file)?;
+            let channel = recording.channels.iter().find(|c| c.name == SHORT_CHANNEL);
+            Ok(channel.with_context(|| format!("{}: no such channel", file.display()))?.read()?)
+        });
+        let records = records.collect::<Result<Vec<_>>>()?;
+        if !records.is_empty() {
+            series.push(ShortRecords { name, speed_rpm, is_damaged, records });
+        }
+    }
+    Ok(series)
+}
+
+/// All records of the list that are below `folder`.
+pub(super) fn read(folder: &Path) -> Result<Vec<Labelled>> {
+    let list = list()?;
     let mut records = Vec::new();
     for entry in &list.records {
         let file = folder.join(&entry.0);

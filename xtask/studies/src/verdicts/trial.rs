@@ -1,6 +1,6 @@
 //! Changes to a record before it is judged, and the outcome.
 
-use stribeck_diagnosis::{Analysis, Defect, Family, Interval, Machine};
+use stribeck_diagnosis::{Analysis, Conclusion, Defect, Family, Interval, Machine};
 use stribeck_dsp::resample_poly;
 use stribeck_formats::Channel;
 use stribeck_scene::dice::Dice;
@@ -16,6 +16,8 @@ pub(super) enum Change {
     Speed(f64),
     /// No speed is stated.
     NoSpeed,
+    /// The stated speed is exact, so that no line corrects it.
+    ExactSpeed,
     /// A bearing that none of the test rigs has.
     Bearing(&'static str),
     /// Only the first seconds [s].
@@ -34,7 +36,7 @@ pub(super) enum Change {
 pub(super) const WITHOUT_SPEED: &str = "no speed";
 
 /// All changes, with their names and whether claims about them may be right.
-pub(super) const CHANGES: [(&str, Change); 15] = [
+pub(super) const CHANGES: [(&str, Change); 16] = [
     ("as it is", Change::None),
     ("speed −1.5 %", Change::Speed(0.985)),
     ("speed +1.5 %", Change::Speed(1.015)),
@@ -42,6 +44,7 @@ pub(super) const CHANGES: [(&str, Change); 15] = [
     ("speed +3 %", Change::Speed(1.03)),
     ("speed × 2", Change::Speed(2.0)),
     (WITHOUT_SPEED, Change::NoSpeed),
+    ("no correction of the speed", Change::ExactSpeed),
     ("6305 given", Change::Bearing("6305")),
     ("6306 with 8 balls given", Change::Bearing("6306, elements=8")),
     ("first 1 s", Change::First(1.0)),
@@ -78,6 +81,13 @@ pub(super) struct Outcome {
     /// The speed that was taken, or found [1/min].
     pub(super) speed_rpm: Option<f64>,
     pub(super) spall_mm: Option<Interval>,
+    pub(super) conclusion: Conclusion,
+    /// Rules by which "no defect" of a raceway is not said; none where it is.
+    pub(super) open: Vec<&'static str>,
+    /// Families that one rule alone refuses.
+    pub(super) refused_alone: Vec<(Defect, &'static str)>,
+    /// Peak of the impacts of each family over the root mean square of the record.
+    pub(super) shown_over_rms: [Option<f64>; 4],
 }
 
 /// How an outcome stands to the truth.
@@ -100,6 +110,12 @@ impl Outcome {
             if one { self.claimed.iter().chain(&self.or).any(holds) } else { self.claimed.iter().all(holds) };
         if right { Standing::Right } else { Standing::Wrong }
     }
+
+    /// The same where a rule claims what it alone refuses.
+    pub(super) fn without(&self, rule: &str) -> Self {
+        let freed = self.refused_alone.iter().filter(|(_, by)| *by == rule).map(|(name, _)| *name);
+        Self { claimed: self.claimed.iter().copied().chain(freed).collect(), ..self.clone() }
+    }
 }
 
 /// Judges a record after a change; `None` where it is refused.
@@ -113,7 +129,7 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
         (record.rate_hz, record.speed_rpm, record.bearing.clone());
     let mut samples = record.samples.clone();
     match change {
-        Change::None | Change::NoSpeed => {}
+        Change::None | Change::NoSpeed | Change::ExactSpeed => {}
         Change::Speed(factor) => speed_rpm *= factor,
         Change::Bearing(name) => bearing = CatalogueBearing::parse(name).ok()?,
         Change::First(s) => samples.truncate((s * rate_hz) as usize),
@@ -129,6 +145,7 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
         speed_rpm: (change != Change::NoSpeed).then_some(speed_rpm),
         bearing: Some(bearing),
         load_n: record.load_n,
+        speed_is_exact: change == Change::ExactSpeed,
         sound_db: sound_db.to_vec(),
         ..Machine::default()
     };
@@ -139,6 +156,8 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
     };
     let scores = of(score, f64::NEG_INFINITY);
     let claims = families.iter().filter(|f| f.claimed);
+    let alone =
+        families.iter().filter_map(|f| Some((f.name, <[_; 1]>::try_from(f.refused_by.as_slice()).ok()?[0])));
     Some(Outcome {
         claimed: claims.clone().map(|f| f.name).collect(),
         or: claims.filter_map(|f| f.not_told_apart_from).collect(),
@@ -148,6 +167,11 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
         score_db: analysis.findings.score_db,
         speed_rpm: analysis.findings.speed_rpm,
         spall_mm: analysis.findings.spall_mm,
+        conclusion: analysis.findings.conclusion,
+        open: analysis.findings.open(),
+        refused_alone: alone.collect(),
+        shown_over_rms: Defect::ALL
+            .map(|name| families.iter().find(|f| f.name == name).and_then(|f| f.shown_over_rms)),
     })
 }
 

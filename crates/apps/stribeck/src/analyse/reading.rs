@@ -14,7 +14,7 @@ use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::RunDir;
 
-use super::{clocks, gaps, turning};
+use super::{clocks, gaps, turning, windows};
 use crate::limits::Limits;
 use crate::out::tell;
 use crate::place::Place;
@@ -340,6 +340,7 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
         signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
     let longest = signals.iter().map(|c| c.len).max().unwrap_or(0);
     let of_longest: Vec<&Channel> = signals.iter().filter(|c| c.len == longest).copied().collect();
+    windows::refuse(recording, &of_longest)?;
     // An hour, a count of turns or a switch is no vibration: those that move come first.
     let first = match &of_longest[..] {
         [] | [_] => of_longest.first(),

@@ -68,6 +68,9 @@ quantities! {
         /// Peak of its impacts over the root mean square of the record, where it is there.
         #[serde(skip)]
         pub shown_over_rms: Option<f64>,
+        /// Names of all rules that refuse it, the one that `reason` words first.
+        #[serde(skip)]
+        pub refused_by: Vec<&'static str>,
         /// The unrelated combs of the same spectrum that it must stand above: fundamental [Hz] and height [dB];
         /// for pictures.
         #[serde(skip)]
@@ -129,13 +132,15 @@ impl Family {
             height_db: f64::NEG_INFINITY,
             limit: None,
             shown_over_rms: None,
+            refused_by: Vec::new(),
             controls: Vec::new(),
         }
     }
 
-    /// The same without its claim.
-    pub(crate) fn refused(self, why: String) -> Self {
-        Self { claimed: false, not_told_apart_from: None, reason: Reason::Decided(why), ..self }
+    /// The same without its claim, by the rule of this name.
+    pub(crate) fn refused(self, rule: &'static str, why: String) -> Self {
+        let (reason, refused_by) = (Reason::Decided(why), vec![rule]);
+        Self { claimed: false, not_told_apart_from: None, reason, refused_by, ..self }
     }
 
     /// Whether the family is there, defect or not.
@@ -174,6 +179,7 @@ impl Family {
             rank,
             controls: Vec::new(),
             not_told_apart_from: None,
+            refused_by: Vec::new(),
             reason: Reason::Undecided,
             ..self
         }

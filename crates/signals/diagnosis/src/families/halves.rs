@@ -63,7 +63,7 @@ pub(crate) fn without_passing(
             Ok(if lasts {
                 family
             } else {
-                family.refused("it stands in one half of the record only".to_owned())
+                family.refused("both halves", "it stands in one half of the record only".to_owned())
             })
         })
         .collect()

@@ -3,12 +3,12 @@
 use stribeck_dsp::{BandEnvelope, Whitened};
 
 use crate::families::controls::MOST_AS_HIGH;
-use crate::families::family::{Family, Reason};
+use crate::families::family::{Family, Reason, SOUND_DEPTHS};
 use crate::families::limits::{ALPHA, KNOCK, KNOCK_OF_ELEMENT};
 use crate::families::sidebands::is_modulated;
 use crate::families::sound::BesideSound;
 use crate::families::unexplained::{Unexplained, UnexplainedComb};
-use crate::families::unrelated::is_the_same;
+use crate::families::unrelated::{SLIP, is_the_same};
 use crate::words::numbers::chance;
 use crate::words::sentence::probability;
 use crate::{Defect, families::element_rhythm};
@@ -51,8 +51,11 @@ pub(crate) fn shared_out(families: Vec<Family>, resolution_hz: f64, modulated: b
             "which are nearer to their place"
         };
         let owner = all().find(|n| share(at, *n) && gives_way(at, *n));
-        let words = |n: usize| Reason::Decided(format!("its lines are those of {}, {why}", families[n].name));
-        out.push(Family { reason: owner.map_or(family.reason.clone(), words), ..family.clone() });
+        let words = |n: usize| format!("its lines are those of {}, {why}", families[n].name);
+        out.push(match owner {
+            Some(owner) => family.clone().refused("shared lines", words(owner)),
+            None => family.clone(),
+        });
     }
     out
 }
@@ -100,7 +103,49 @@ pub(crate) fn without_mirrored(
     let (loser, winner) = (loser.name, winner.name.shocks_name());
     let why = format!("its lines are those of {winner}, a turn of the shaft away");
     let of = |family: Family| {
-        if family.name == loser { Family { reason: Reason::Decided(why.clone()), ..family } } else { family }
+        if family.name == loser { family.refused("a turn of the shaft away", why.clone()) } else { family }
+    };
+    families.into_iter().map(of).collect()
+}
+
+/// Turns of the cage by which sidebands of an element's family lie at the place of a raceway: in a 6205 those at −3 and
+/// +2 are within slip of BPFO and BPFI.
+const CAGES: i32 = 3;
+
+/// A spot on an element comes under the load once a turn of the cage, so twice its spin has sidebands at the cage's
+/// distance. A raceway's first line that is one of them, of which all that are nearer to `element_hz` stand higher, is
+/// not the raceway's.
+pub(crate) fn without_sidebands_of_elements(
+    families: Vec<Family>,
+    element_hz: f64,
+    cage_hz: f64,
+    bands: &[(&BandEnvelope, Whitened)],
+) -> Vec<Family> {
+    let turns_away = |family: &Family| {
+        let hz = family.measured_hz.filter(|_| matches!(family.name, Defect::Bpfo | Defect::Bpfi))?;
+        let (_, spectrum) =
+            bands.iter().find(|(band, _)| family.band_hz == Some((band.low_hz, band.high_hz)))?;
+        let side = if element_hz > hz { 1.0 } else { -1.0 };
+        let stands = |turns: i32| {
+            let at = |slip: f64| spectrum.at(hz + side * f64::from(turns) * cage_hz * (1.0 + slip));
+            let highest = [-SLIP, -0.5 * SLIP, 0.0, 0.5 * SLIP, SLIP].map(at).into_iter().fold(0.0, f64::max);
+            highest > spectrum.at(hz) && spectrum.line_p_value(highest) < ALPHA
+        };
+        let centre = |turns: i32| hz + side * f64::from(turns) * cage_hz;
+        let turns = (1..=CAGES).find(|turns| (centre(*turns) / element_hz - 1.0).abs() < SLIP)?;
+        (1..=turns).all(stands).then_some(turns)
+    };
+    let of = |family: Family| {
+        match turns_away(&family) {
+        Some(turns) => family.refused(
+            "sideband of an element",
+            format!(
+                "its lines are sidebands of 2×BSF, {turns} times the frequency of the cage away, and those nearer to \
+                 it stand higher"
+            ),
+        ),
+        None => family,
+    }
     };
     families.into_iter().map(of).collect()
 }
@@ -170,19 +215,19 @@ pub(crate) struct Case<'a> {
 /// Why a family is refused; `None` where this rule does not refuse it.
 type Rule = fn(&Family, &Case<'_>) -> Option<String>;
 
-/// The rules, in their order: the first that refuses a family decides. Every family of rolling defects is
+/// The rules by name, in their order: the first that refuses a family says why. Every family of rolling defects is
 /// modulated by the cage, so the cage is suspected last.
-const RULES: [Rule; 10] = [
-    noise_makes_as_much,
-    unrelated_combs_stand_as_high,
-    swings_as_in_sound_bearings,
-    sound_bearings_show_as_much,
-    no_cage_rolls_so_fast,
-    unexplained_comb_stands_higher,
-    something_else_knocks_louder,
-    element_without_the_cage,
-    cage_shares_in_a_family,
-    another_family_stands_higher,
+const RULES: [(&str, Rule); 10] = [
+    ("noise", noise_makes_as_much),
+    ("unrelated combs", unrelated_combs_stand_as_high),
+    ("depth of an impact", swings_as_in_sound_bearings),
+    ("depth in healthy bearings", sound_bearings_show_as_much),
+    ("rolling", no_cage_rolls_so_fast),
+    ("unexplained comb", unexplained_comb_stands_higher),
+    ("louder source in another band", something_else_knocks_louder),
+    ("cage in an element", element_without_the_cage),
+    ("share of the cage", cage_shares_in_a_family),
+    ("higher family", another_family_stands_higher),
 ];
 
 fn noise_makes_as_much(family: &Family, _: &Case<'_>) -> Option<String> {
@@ -202,8 +247,11 @@ fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<Strin
     let knock = if family.name == Defect::Bsf && case.modulated { KNOCK_OF_ELEMENT } else { KNOCK };
     (depth < knock && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but the power of its band varies by {:.0} % of its mean only, as in sound bearings",
-            100.0 * depth
+            "it is there, but the power of its band varies by {:.0} % of its mean, where impacts vary it by {:.0} %; \
+             families of healthy bearings reach that with a probability of {}",
+            100.0 * depth,
+            100.0 * knock,
+            chance((-SOUND_DEPTHS * depth).exp())
         )
     })
 }
@@ -211,7 +259,7 @@ fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<Strin
 fn sound_bearings_show_as_much(family: &Family, case: &Case<'_>) -> Option<String> {
     (family.p_value >= ALPHA && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but sound bearings show as much with a probability of {}",
+            "it is there, but healthy bearings show as much with a probability of {}",
             probability(family.p_value)
         )
     })
@@ -251,7 +299,7 @@ fn something_else_knocks_louder(family: &Family, case: &Case<'_>) -> Option<Stri
     (family.p_value >= BESIDE_OTHERS && case.beyond_sound(family).is_none()).then(|| {
         format!(
             "it is there, but something that is no family of this bearing knocks louder in another band, at \
-             {:.3} times the shaft, and sound bearings show as much with a probability of {}",
+             {:.3} times the shaft, and healthy bearings show as much with a probability of {}",
             other.order,
             probability(family.p_value)
         )
@@ -286,12 +334,19 @@ pub(crate) fn decide(
 ) -> Vec<Family> {
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
     let case = Case { around, sound, modulated, first_db };
-    let decided = |family: Family| match &family.reason {
-        Reason::Decided(_) => family,
-        Reason::Undecided => match RULES.iter().find_map(|rule| rule(&family, &case)) {
-            Some(why) => Family { reason: Reason::Decided(why), ..family },
-            None => claimed(family, &case),
-        },
+    let decided = |family: Family| {
+        let is_decided = family.reason != Reason::Undecided;
+        if is_decided && family.refused_by.is_empty() {
+            return family;
+        }
+        let refusals = RULES.iter().filter_map(|(name, rule)| Some((*name, rule(&family, &case)?)));
+        let (names, why): (Vec<_>, Vec<_>) = refusals.unzip();
+        let refused_by = [family.refused_by.clone(), names].concat();
+        match why.into_iter().next() {
+            Some(why) if !is_decided => Family { reason: why.into(), refused_by, ..family },
+            None if !is_decided => claimed(family, &case),
+            _ => Family { refused_by, ..family },
+        }
     };
     families.into_iter().map(decided).collect()
 }
@@ -364,6 +419,7 @@ pub(crate) fn with_element(families: Vec<Family>, bands: &[BandEnvelope]) -> Vec
             ..family
         },
         Defect::Ftf => family.refused(
+            "element once a turn of the cage",
             "it is there, as the rhythm in which one rolling element passes under the load".to_owned(),
         ),
         _ => family,

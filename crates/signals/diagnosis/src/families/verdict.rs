@@ -19,11 +19,13 @@ use stribeck_theory::catalogue::{CatalogueBearing, DefectOrders, Element};
 use crate::families::candidate::{Candidate, Standing, search};
 use crate::families::comb_at_half::comb_at_half;
 use crate::families::controls::{controls, part_as_high, rank};
-use crate::families::family::{Family, Reason};
+use crate::families::family::Family;
 use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
 use crate::families::power;
-use crate::families::rules::{Around, claimed_first, decide, first, shared_out, without_mirrored};
+use crate::families::rules::{
+    Around, claimed_first, decide, first, shared_out, without_mirrored, without_sidebands_of_elements,
+};
 use crate::families::sidebands::is_modulated_by_the_cage;
 use crate::families::sound::{BesideSound, farthest};
 use crate::families::unexplained::{self, AboveNoise, Unexplained, UnexplainedComb};
@@ -173,6 +175,7 @@ impl Candidates {
             .into_iter()
             .map(|f| if f.name == Defect::Bsf && modulated { f.beside_the_cage() } else { f })
             .collect();
+        let measured = without_sidebands_of_elements(measured, 2.0 * places[2], cage_hz, &whitened);
         let apart = without_mirrored(measured, shaft_hz, modulated, &whitened);
         let shared = shared_out(apart, resolution_hz, modulated);
         let score_db = farthest(&shared).map(|(_, score_db)| score_db);
@@ -394,14 +397,17 @@ fn beside_controls(
     first_hz: Option<f64>,
 ) -> Family {
     let Candidate { family, standing, .. } = candidate;
-    let reason = half.map_or(family.reason.clone(), |half| {
-        Reason::Decided(format!(
-            "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
-             pass",
-            half.hz
-        ))
-    });
-    let judged = Family { reason, ..family };
+    let judged = match half {
+        Some(half) => family.refused(
+            "half the rate",
+            format!(
+                "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
+                 pass",
+                half.hz
+            ),
+        ),
+        None => family,
+    };
     let Some(Standing { band, comb, comb_hz, times, .. }) = standing else {
         return judged.calibrated();
     };

@@ -37,17 +37,20 @@ impl Settled {
         };
         let shaft = shaft_by_lines(kept, *rate_hz, &taken);
         let lines = by_lines(shaft, kept, *rate_hz, bands, &taken);
-        let correction = lines.and_then(|lines| Some((lines.hz, lines.correction(&taken)?)));
-        let (corrected_hz, corrected_note) = correction.unzip();
+        let correction = lines.and_then(|lines| lines.correction(&taken));
         Self {
             given_rpm: taken.speed_rpm,
-            is_corrected: corrected_hz.is_some(),
+            is_corrected: correction.is_some(),
             uncertainty_rpm: found.map(|(_, uncertainty_hz)| 60.0 * uncertainty_hz),
             lines_hz: lines.map(|lines| lines.hz),
             by_shaft: shaft.is_some_and(|shaft| shaft.is_distinct()),
-            notes: found_note.into_iter().chain(corrected_note).collect(),
+            notes: found_note.into_iter().chain(correction).collect(),
             machine: Machine {
-                speed_rpm: corrected_hz.map_or(taken.speed_rpm, |hz| Some(60.0 * hz)),
+                // A measured speed is better than a given one however near it is; an exact one stays.
+                speed_rpm: match lines.filter(|_| !taken.speed_is_exact) {
+                    Some(lines) => Some(60.0 * lines.hz),
+                    None => taken.speed_rpm,
+                },
                 ..taken
             },
         }

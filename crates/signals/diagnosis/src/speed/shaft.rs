@@ -25,7 +25,7 @@ const CLEAR: u32 = 8;
 const SUPPORT: usize = 2;
 /// Speeds closer to one another than this number of lines are one.
 const SAME_LINES: f64 = 3.0;
-/// Corrections below this part are within the tolerance of the families as it is.
+/// Corrections below this part are taken without a word.
 const CORRECTED: f64 = 2e-3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +92,9 @@ pub(crate) fn near(
         clear.filter(|line| whitened.at(*line) >= least).count()
     };
     let (here, there) = (support(hz), support(given_hz));
-    let is_supported = here >= SUPPORT && (here > there || !is_correction(hz, given_hz));
+    // The lines of speeds so near to one another are the same.
+    let is_near = (hz - given_hz).abs() < SAME_LINES * grid_hz || !is_correction(hz, given_hz);
+    let is_supported = here >= SUPPORT && (here > there || is_near);
     Some(Shaft {
         is_supported,
         hz,

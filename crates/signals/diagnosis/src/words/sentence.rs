@@ -142,7 +142,7 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, t
              family{why}."
         );
     }
-    match open(families, unexplained, doubt) {
+    match open(families, unexplained, doubt).first() {
         None => no_defect(conclusion, unit),
         Some(open) => format!("The record cannot tell whether a raceway is damaged: {}.", why(open, unit)),
     }
@@ -165,8 +165,8 @@ pub(crate) fn strength(peak: f64, (low_hz, high_hz): (f64, f64), unit: Option<&s
 }
 
 /// Why the record cannot tell, and what would.
-fn why(open: Open<'_>, unit: Option<&str>) -> String {
-    match open {
+fn why(open: &Open<'_>, unit: Option<&str>) -> String {
+    match *open {
         Open::Doubt(Doubt::Samples) => "its samples are spoilt".to_owned(),
         Open::Doubt(Doubt::SoughtSpeed) => {
             "its speed was sought in the record, and at a wrong speed no defect \

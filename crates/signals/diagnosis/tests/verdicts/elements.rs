@@ -40,6 +40,25 @@ fn planted_an_element_that_loses_its_spin_beyond_the_load_is_distinguished_from_
     assert!(findings.verdict.contains("of the cage or of one rolling element"), "{}", findings.verdict);
 }
 
+/// In a 6205 twice BSF less three turns of the cage lies 1.8 % below BPFO: a spalled ball was called an outer raceway.
+#[test]
+fn issue_a_spot_on_an_element_is_not_called_a_raceway() {
+    /// A second, as the records were in which it was.
+    const SECOND: usize = 12_160;
+    for rpm in [900.0, 1500.0, 2100.0, 3000.0] {
+        let shaft_hz = rpm / 60.0;
+        let (cage_hz, knocks_hz) = (0.394 * shaft_hz, 2.0 * 2.357 * shaft_hz);
+        let element = knocks(knocks_hz, SECOND, under_the_load(cage_hz));
+        let findings = analysed(sum([(2.0, element), (1.0, coloured(5, SECOND))]), rpm);
+        let outer = family(&findings, Defect::Bpfo);
+        assert!(!outer.claimed && !family(&findings, Defect::Bpfi).claimed, "{rpm}: {findings:#?}");
+        assert!(outer.reason.to_string().contains("sidebands of 2×BSF, 3 times"), "{rpm}: {outer:#?}");
+    }
+    // A raceway keeps its own lines.
+    let findings = analysed(sum([(1.0, knocks(179.2, SECOND, |_| 1.0)), (1.0, coloured(5, SECOND))]), 3000.0);
+    assert_eq!(claimed(&findings), ["BPFO"], "{findings:#?}");
+}
+
 /// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns
 /// follows the ring's lead over the shaft.
 #[test]

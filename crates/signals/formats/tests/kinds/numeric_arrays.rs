@@ -138,3 +138,55 @@ fn issue_matlab_5_of_libsndfile_counts_a_tag_twice() {
         }
     }
 }
+
+/// A struct of MATLAB 5 with its members.
+fn mat5_struct(name: &str, members: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    const LONGEST: usize = 32;
+    let names = members.iter().flat_map(|(name, _)| {
+        let mut padded = name.as_bytes().to_vec();
+        padded.resize(LONGEST, 0);
+        padded
+    });
+    let parts = [
+        mat5_element(6, &[2_u32, 0].map(u32::to_le_bytes).concat()),
+        mat5_element(5, &[1_i32, 1].map(i32::to_le_bytes).concat()),
+        mat5_element(1, name.as_bytes()),
+        mat5_element(5, &(LONGEST as i32).to_le_bytes()),
+        mat5_element(1, &names.collect::<Vec<u8>>()),
+        members.iter().flat_map(|(_, bytes)| bytes.clone()).collect(),
+    ];
+    mat5_element(14, &parts.concat())
+}
+
+/// A text of MATLAB 5.
+fn mat5_text(text: &str) -> Vec<u8> {
+    let letters: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let parts = [
+        mat5_element(6, &[4_u32, 0].map(u32::to_le_bytes).concat()),
+        mat5_element(5, &[1_i32, text.len() as i32].map(i32::to_le_bytes).concat()),
+        mat5_element(1, b""),
+        mat5_element(4, &letters),
+    ];
+    mat5_element(14, &parts.concat())
+}
+
+/// A struct of Simcenter Testlab was refused: it "does not say how fast it was sampled".
+#[test]
+fn issue_structs_of_axes_say_rate_and_unit() {
+    let desk = Scratch::create("formats-mat5-axes");
+    let one = |value: f64| mat5_matrix("", &[1, 1], std::iter::once(value));
+    let quantity = |unit: &str| mat5_struct("", &[("label", mat5_text(unit))]);
+    let x = [("start_value", one(0.0)), ("increment", one(1.0 / 25_600.0)), ("quantity", quantity("s"))];
+    let y = [("values", mat5_matrix("", &[150, 2], (0..COUNT).map(signal))), ("quantity", quantity("g"))];
+    let all = [("x_values", mat5_struct("", &x)), ("y_values", mat5_struct("", &y))];
+    let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
+    bytes.resize(124, b' ');
+    bytes.extend([0, 1, b'I', b'M']);
+    bytes.extend(mat5_struct("Signal", &all));
+    let recording = opened(&desk, "testlab.mat", &bytes);
+    let signals: Vec<_> = recording.channels.iter().filter(|c| c.len == 150).collect();
+    assert_eq!(signals.len(), 2, "{recording:?}");
+    for channel in signals {
+        assert_eq!((channel.rate_hz, channel.unit.as_deref()), (Some(25_600.0), Some("g")), "{channel:?}");
+    }
+}
