@@ -9,7 +9,7 @@ use crate::place::shown;
 use crate::shelf::Kind;
 
 /// Files of all kinds of folders, by name.
-const FILES: [&str; 31] = [
+const FILES: [&str; 33] = [
     // A run, an ensemble and their reports.
     "run.json",
     "ensemble.json",
@@ -39,6 +39,8 @@ const FILES: [&str; 31] = [
     "detect.json",
     "machine.npy",
     "DATASHEET.md",
+    "CARD.md",
+    "SHA256SUMS",
     // Records.
     "findings.json",
     "trend.json",
@@ -48,7 +50,8 @@ const FILES: [&str; 31] = [
 ];
 
 /// Folders whose files all have one of some endings.
-const FILLED: [(&str, &[&str]); 4] = [
+const FILLED: [(&str, &[&str]); 5] = [
+    ("records", &["parquet"]),
     ("figures", &["svg", "png", "gif"]),
     ("frames", &["npy"]),
     ("failed", &["txt"]),

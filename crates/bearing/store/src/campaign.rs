@@ -24,10 +24,12 @@ mod refusal;
 mod refused;
 mod split;
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::run_dir::Keep;
-use design::{Rows, Variants};
+use design::{Column, Rows, Times, Variants};
 use document::unreadable;
 pub use label::Label;
 use refusal::{CAMPAIGN, File, varies};
@@ -69,6 +71,22 @@ group! {
         split: Split = Split::default();
         /// Files that are kept.
         keep: Keep = Keep::All;
+        /// What makes its tables a data set to hand on.
+        data_set: Option<DataSet> = None;
+    }
+}
+
+group! {
+    /// A data set to hand on: records in parts, a row a record, with a card and checksums.
+    pub struct DataSet {
+        /// Its title.
+        pub title: String = String::new(), required();
+        /// Licence, as SPDX names it.
+        pub licence: String = String::new(), required();
+        /// How to cite it.
+        pub citation: String = String::new(), required();
+        /// Files into which its records are parted.
+        pub parts: usize = 16, within(1.0, 1000.0);
     }
 }
 
@@ -102,6 +120,8 @@ pub struct Campaign {
     pub keep: Keep,
     /// Fields of the scene's file in whose place each bearing brings its own.
     pub replaced: Vec<OfBearing>,
+    /// What makes its tables a data set to hand on.
+    pub data_set: Option<DataSet>,
 }
 
 /// A field of the scene's file that the bearings of a campaign replace.
@@ -188,8 +208,10 @@ impl Campaign {
         }
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
-        let rows =
-            file.variants.rows(file.seed, folder, &place).map_err(|no| place.refuse(&no.at, no.why))?;
+        let rows = file
+            .variants
+            .rows(file.seed, folder, &place, &measures(&file, base.as_deref()))
+            .map_err(|no| place.refuse(&no.at, no.why))?;
         check_fields(&rows, &place)?;
         let count = rows.values.len() * file.starts;
         if count == 0 || count > MOST_RUNS {
@@ -197,19 +219,20 @@ impl Campaign {
         }
         let runs = variants(&file, base.as_deref(), &rows, &place)?;
         let replaced = base.as_deref().map_or_else(Vec::new, |base| of_bearings(base, &file, &rows));
-        let fields = rows.fields.into_iter().map(|(field, _)| field).collect();
+        let fields = rows.columns.into_iter().map(|column| column.name).collect();
         let text = text.to_owned();
-        Ok(Self { name: file.name, text, fields, runs, seed: file.seed, keep: file.keep, replaced })
+        let Text { name, seed, keep, data_set, .. } = file;
+        Ok(Self { name, text, fields, runs, seed, keep, replaced, data_set })
     }
 }
 
 /// Fields that no scene has, or that vary twice.
 fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
-    for (column, (field, _)) in rows.fields.iter().enumerate() {
-        if let Some(problem) = scene_file::unknown_field(field) {
+    for (column, Column { name: field, is_field, .. }) in rows.columns.iter().enumerate() {
+        if let Some(problem) = scene_file::unknown_field(field).filter(|_| *is_field) {
             return Err(place.field(problem, rows, column));
         }
-        if rows.fields[..column].iter().any(|(before, _)| before == field) {
+        if rows.columns[..column].iter().any(|before| before.name == *field) {
             let why = format!(
                 "`{field}` is named twice: a field varies in one way, and is one column of the tables"
             );
@@ -223,9 +246,28 @@ fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Numbers of bearings that ranges are multiples of, each scene read once.
+fn measures<'a>(
+    file: &'a Text,
+    base: Option<&'a Path>,
+) -> impl Fn(Option<&str>, Times) -> Result<f64, String> + 'a {
+    let known: RefCell<BTreeMap<Option<String>, Scene>> = RefCell::default();
+    move |bearing, times| {
+        let mut known = known.borrow_mut();
+        let named = bearing.map(str::to_owned);
+        if !known.contains_key(&named) {
+            let own = bearing.map(|bearing| format!("bearing={bearing}"));
+            let set: Vec<String> = file.set.iter().cloned().chain(own).collect();
+            let scene = scene_file::readable(base, &set).map_err(|why| why.to_string())?;
+            known.insert(named.clone(), scene);
+        }
+        Ok(times.of(&known[&named]))
+    }
+}
+
 /// Fields of the scene at `base` that its variants replace by naming another bearing.
 fn of_bearings(base: &Path, file: &Text, rows: &Rows) -> Vec<OfBearing> {
-    let column = rows.fields.iter().position(|(field, _)| field == "bearing");
+    let column = rows.columns.iter().position(|column| column.name == "bearing");
     let mut seen: Vec<Option<&String>> = Vec::new();
     let mut all: Vec<OfBearing> = Vec::new();
     for (row, values) in rows.values.iter().enumerate() {
@@ -251,8 +293,7 @@ fn of_bearings(base: &Path, file: &Text, rows: &Rows) -> Vec<OfBearing> {
 impl Text {
     /// All overrides of a variant.
     fn overrides(&self, rows: &Rows, row: usize) -> Vec<String> {
-        let assigned = (0..rows.fields.len()).map(|column| rows.argument(row, column));
-        self.set.iter().cloned().chain(assigned).collect()
+        self.set.iter().cloned().chain(rows.sets[row].iter().flatten().cloned()).collect()
     }
 }
 
