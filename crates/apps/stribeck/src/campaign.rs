@@ -139,8 +139,7 @@ pub(crate) fn run(
     options: &OfFile,
     place: &Place,
 ) -> Result<ExitCode> {
-    let mut campaign = Campaign::read_keeping(file, keep)?;
-    campaign.runs.truncate(options.max.map_or(usize::MAX, |most| most as usize));
+    let campaign = Campaign::read_first(file, keep, options.max.map_or(usize::MAX, |most| most as usize))?;
     let out = out.unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
         announce(&campaign);

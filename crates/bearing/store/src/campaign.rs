@@ -163,11 +163,11 @@ impl Campaign {
     /// the scene that it starts from, and values of the wrong type. An impossible scene is no error here: its
     /// variant carries the reason.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::read_keeping(path, None)
+        Self::read_first(path, None, usize::MAX)
     }
 
-    /// As [`Campaign::read`], of the file as if it had this `keep`.
-    pub fn read_keeping(path: &Path, keep: Option<Keep>) -> Result<Self, SceneError> {
+    /// As [`Campaign::read`], of the file as if it had this `keep`; at `most` as many runs, the first ones.
+    pub fn read_first(path: &Path, keep: Option<Keep>, most: usize) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =
             std::fs::read_to_string(path).map_err(|e| unreadable(&shown, &CAMPAIGN, refusal::FILE, &e))?;
@@ -182,11 +182,15 @@ impl Campaign {
                 (None, None) => {}
             }
         }
-        Self::parse(&text, &shown, path.parent().unwrap_or(Path::new("")))
+        Self::of_text(&text, &shown, path.parent().unwrap_or(Path::new("")), most)
     }
 
     /// The campaign of a `text` that is to lie in `folder` as a file called `name`.
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
+        Self::of_text(text, name, folder, usize::MAX)
+    }
+
+    fn of_text(text: &str, name: &str, folder: &Path, most: usize) -> Result<Self, SceneError> {
         let (file, place): (Text, _) = File::read(name, text, &CAMPAIGN)?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
@@ -208,7 +212,7 @@ impl Campaign {
         }
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
-        let rows = file
+        let mut rows = file
             .variants
             .rows(file.seed, folder, &place, &measures(&file, base.as_deref()))
             .map_err(|no| place.refuse(&no.at, no.why))?;
@@ -217,7 +221,9 @@ impl Campaign {
         if count == 0 || count > MOST_RUNS {
             return refuse("variants", format!("make {count} runs; 1 to {MOST_RUNS} are possible"));
         }
-        let runs = variants(&file, base.as_deref(), &rows, &place)?;
+        rows.values.truncate(most.div_ceil(file.starts));
+        let mut runs = variants(&file, base.as_deref(), &rows, &place)?;
+        runs.truncate(most);
         let replaced = base.as_deref().map_or_else(Vec::new, |base| of_bearings(base, &file, &rows));
         let fields = rows.columns.into_iter().map(|column| column.name).collect();
         let text = text.to_owned();

@@ -67,7 +67,7 @@ impl Patch {
 
 /// Patches of both raceways and of a roller: they depend on no load, up to the one that they are wide enough for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Patches {
+pub(crate) struct Patches {
     outer: Patch,
     inner: Patch,
     roller: Patch,

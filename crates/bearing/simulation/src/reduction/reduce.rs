@@ -88,6 +88,10 @@ impl ReducedMesh {
         load.force = load_n;
         load.along.iter_mut().chain(&mut load.across).for_each(|force| *force *= share);
         let Compliances { outer, inner, wall } = self.patches.compliances(scene);
+        // What the bodies store under the load at rest, by which the ledger's error is measured.
+        let stored = [outer.curve(), inner.curve()];
+        let under = |force: &f64| stored.iter().map(|curve| curve.energy(*force)).sum::<f64>();
+        self.reduction.strain = scene.static_load().map_or(0.0, |load| load.roller_n.iter().map(under).sum());
         self.reduction.outer_compliance = outer;
         self.reduction.inner_compliance = inner;
         self.reduction.wall_compliance = wall;

@@ -361,11 +361,11 @@ impl Members {
     fn choices(&self, seed: u64) -> Result<Vec<Choice>, String> {
         let places = latin_hypercube(seed, self.count, self.over.len());
         let member = |number: usize| {
-            let number_of = |(axis, of): (usize, &Axis)| {
+            let numbers = self.over.iter().enumerate().map(|(axis, of)| {
                 of.check()?;
                 Ok((of.name.as_str(), of.at(places[axis][number], 1.0)?))
-            };
-            let numbers = self.over.iter().enumerate().map(number_of).collect::<Result<Vec<_>, String>>()?;
+            });
+            let numbers = numbers.collect::<Result<Vec<_>, String>>()?;
             let set = self.set.iter().map(|text| filled(text, &numbers)).collect();
             Ok(Choice { shown: (number + 1).to_string(), set })
         };
