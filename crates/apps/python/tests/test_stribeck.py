@@ -55,6 +55,24 @@ class Learning(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "folds"):
             next(stribeck.learn.by_bearing(["a", "a"], folds=2))
 
+    def test_a_leak_is_named(self):
+        rng = np.random.default_rng(3)
+        record = rng.normal(size=4000)
+        cut = lambda start: record[start : start + 1000]
+        train = [cut(0), cut(1000)]
+        self.assertEqual(stribeck.learn.leaks(train, [cut(2000), cut(3000)], ["a", "a"], ["b", "b"]), [])
+        # By 50 samples at either end, or all of it; of two channels that are off nothing is shared.
+        for start in (1950, 1000, 537):
+            self.assertIn("1 of 2 windows", stribeck.learn.leaks(train, [cut(start), cut(3000)])[0], start)
+        self.assertIn("1 of 1", stribeck.learn.leaks([cut(1000)], [cut(50)])[0])
+        self.assertEqual(stribeck.learn.leaks([np.zeros(500)], [np.zeros(500)]), [])
+        self.assertIn("2 bearings stand on both sides", stribeck.learn.leaks([], [], ["a", "b", "c"], ["b", "c"])[0])
+        windows = stribeck.learn.Windows.of(self.records(["outer", "inner"]), bearing="6205")
+        with self.assertWarnsRegex(stribeck.learn.LeakWarning, "split by bearing"):
+            windows.split([0, 1], [2, 3, 4, 5])
+        train, test = windows.split(*next(stribeck.learn.by_bearing(windows.bearings, folds=2)))
+        self.assertEqual(len(train) + len(test), len(windows))
+
     def test_background_has_its_stated_ratio(self):
         windows = stribeck.learn.Windows.of(self.records(["outer"]), bearing="6205")
         background = np.random.default_rng(5).normal(size=100_000)

@@ -5,6 +5,7 @@
 //! command starts and continues, parts of it may run anywhere, in any order and at once, and the tables are
 //! the same.
 
+mod checksums;
 mod datasheet;
 mod names;
 mod tables;
@@ -27,6 +28,7 @@ use crate::many_runs::{ManyRuns, Share, Stage, Wanted};
 use crate::out::{alert, caution, say, tell};
 use crate::place::{Place, shown};
 use crate::side_by_side::Left;
+use checksums::CHECKSUMS;
 use tables::Written;
 
 /// Flags of `sweep` for the campaign of a file.
@@ -38,6 +40,9 @@ pub(crate) struct OfFile {
     /// Of a campaign file: runs only part I of N, for several machines; the last one makes the tables
     #[arg(long, value_name = "I/N", conflicts_with = "set", value_parser = shard)]
     shard: Option<Shard>,
+    /// Of a campaign file: makes the first N runs and the tables of them; without it later the same folder goes on
+    #[arg(long, value_name = "N", conflicts_with_all = ["set", "emit"], value_parser = clap::value_parser!(u32).range(1..))]
+    max: Option<u32>,
     /// Of a campaign file: runs nothing, and prints the script that has an engine run it in parts, to be sent to a
     /// file: `> job.sh`. Each part has the --jobs, --threads [default there: one] and --memory-gb of this command
     #[arg(long, value_name = "ENGINE", conflicts_with_all = ["set", "shard"])]
@@ -69,6 +74,8 @@ pub(crate) const CAMPAIGN: &str = "campaign.ron";
 pub(crate) const SCENES: &str = "scenes.txt";
 const DATASHEET: &str = "DATASHEET.md";
 const INDEX: &str = "index.html";
+/// The card of a data set.
+pub(crate) const CARD: &str = "CARD.md";
 
 /// The first marks the folder of a campaign from the start of its first part on, the second when it is done.
 pub(crate) const MARKS: [&str; 2] = [TURN, tables::RUNS];
@@ -132,7 +139,7 @@ pub(crate) fn run(
     options: &OfFile,
     place: &Place,
 ) -> Result<ExitCode> {
-    let campaign = Campaign::read_keeping(file, keep)?;
+    let campaign = Campaign::read_first(file, keep, options.max.map_or(usize::MAX, |most| most as usize))?;
     let out = out.unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
         announce(&campaign);
@@ -229,14 +236,17 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
         // Folders of earlier versions have no such list.
         if let Ok(before) = std::fs::read_to_string(folder.scenes()) {
             let same = before.lines().zip(scenes.lines()).take_while(|(before, now)| before == now).count();
+            // One of them may be the beginning of the other, by `--max`.
             ensure!(
-                before == scenes,
+                same == before.lines().count().min(scenes.lines().count()),
                 "`{}` holds runs of other scenes, beginning with run {}: the table or the scene that this \
                  campaign names was changed since. Give a folder with `--out`, or put it back",
                 shown(folder.path()),
                 same + 1
             );
-            return Ok(());
+            if before.len() >= scenes.len() {
+                return Ok(());
+            }
         }
     }
     std::fs::create_dir_all(folder.path())
@@ -290,6 +300,13 @@ fn conclude(
     let turn = folder.take_turn()?;
     let written = tables::write(folder, campaign, &rows)?;
     replace(&folder.path().join(DATASHEET), &datasheet::text(campaign, &rows, &written))?;
+    if let Some(data_set) = &campaign.data_set {
+        let card = datasheet::card(data_set, campaign, &rows, &written);
+        replace(&folder.path().join(CARD), &card)?;
+        let tables = [CARD, DATASHEET, CAMPAIGN, tables::RUNS, tables::EVENTS].map(str::to_owned);
+        let files: Vec<String> = tables.into_iter().chain(written.records.iter().cloned()).collect();
+        replace(&folder.path().join(CHECKSUMS), &checksums::text(folder.path(), &files)?)?;
+    }
     let index = index(campaign, rows, &written);
     write_campaign(folder.path(), &index)?;
     drop(turn);
@@ -332,6 +349,10 @@ fn index(campaign: &Campaign, runs: Vec<OneOfMany>, written: &Written) -> Campai
     ];
     if !written.signals.is_empty() {
         files.push((tables::SIGNALS, "a row for each sample of the accelerations"));
+    }
+    if campaign.data_set.is_some() {
+        files.push((CARD, "the card of the data set, with its licence and how to load it"));
+        files.push((CHECKSUMS, "checksums of its files"));
     }
     files.push((CAMPAIGN, "the campaign, as it was run"));
     let varies = campaign.fields.iter().any(|field| field.starts_with("bearing"));

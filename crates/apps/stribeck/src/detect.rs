@@ -132,6 +132,7 @@ fn base(options: &Options, place: &Place) -> Result<Scene> {
     let mut scene = place.scene(Some(&options.scene), &options.set)?;
     if let Some(file) = &options.machine {
         scene.housing = HousingScene::Machine(MachineScene::read(&place.locate(file))?);
+        scene.sample_for_machine();
     }
     if scene.housing.machine().is_none() {
         bail!(
@@ -235,6 +236,7 @@ fn conclude(
             .map(|(length_mm, found)| OfLength { length_mm, found, by_curve: curve.at(length_mm) })
             .collect(),
         sound: share(None),
+        silent: base.housing.machine().is_some_and(MachineScene::is_silent),
         smallest,
     })
 }

@@ -10,12 +10,12 @@ use stribeck_store::run_dir::Stage;
 
 use crate::out::say;
 use crate::place::{Place, shown};
-use crate::shelf::{Item, ago, in_words, items, size};
+use crate::shelf::{Item, ago, all_items, in_words, items, size};
 
 /// Flags of `list`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Folder of runs [default: runs]
+    /// Folder of runs [default: runs, and what `--out` put beside it]
     folder: Option<PathBuf>,
     /// Writes the list as JSON
     #[arg(long)]
@@ -34,7 +34,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         place.program,
         shown(&place.runs())
     );
-    let all = items(&folder);
+    let all = if options.folder.is_some() { items(&folder) } else { all_items(place) };
     if options.json {
         let rows: Vec<_> = all.iter().map(as_json).collect();
         say!("{}", serde_json::to_string_pretty(&rows)?);

@@ -248,9 +248,19 @@ fn words(a: &MachineAgreement) -> String {
         _ => String::new(),
     };
     format!(
-        "third octaves off by {:.1} dB (median), RMS {:.2} and {:.2} m/s² measured, kurtosis {:.1} and {:.1}{height}",
-        a.octaves_db, a.rms_m_s2[0], a.rms_m_s2[1], a.kurtosis[0], a.kurtosis[1]
+        "third octaves off by {:.1} dB (median), RMS {} and {} m/s² measured, kurtosis {:.1} and {:.1}{height}",
+        a.octaves_db,
+        three_digits(a.rms_m_s2[0]),
+        three_digits(a.rms_m_s2[1]),
+        a.kurtosis[0],
+        a.kurtosis[1]
     )
+}
+
+/// A level, however small.
+fn three_digits(level: f64) -> String {
+    let decimals = if level > 0.0 { 2.0 - level.log10().floor() } else { 2.0 };
+    format!("{level:.*}", decimals.clamp(0.0, 12.0) as usize)
 }
 
 /// What is known of a record for its verdict.
@@ -277,6 +287,12 @@ mod tests {
         for text in ["outer", "roller:1", "outer:-1", "outer:wide", "inner:inf", "outer:1x", "outer:1x0"] {
             assert!(spall(text).unwrap_err().contains("outer:0.53"), "{text}");
         }
+    }
+
+    #[test]
+    fn by_hand_levels_have_three_digits() {
+        let shown = [0.0, 0.000_432_1, 0.0999, 1.234, 123.4].map(three_digits);
+        assert_eq!(shown, ["0.00", "0.000432", "0.0999", "1.23", "123"]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::out::say;
 use crate::place::{Place, shown};
-use crate::shelf::{Kind, find, items};
+use crate::shelf::{Kind, all_items, find};
 
 /// Flags of `open`.
 #[derive(Debug, clap::Args)]
@@ -41,7 +41,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             }
         }
         None => {
-            let newest = items(&place.runs()).into_iter().find_map(|item| item.page());
+            let newest = all_items(place).into_iter().find_map(|item| item.page());
             newest.with_context(|| {
                 format!(
                     "nothing in `{}` has a page: start a run with `{} simulate`, or name a folder",

@@ -39,6 +39,8 @@ const FILES: [&str; 33] = [
     "detect.json",
     "machine.npy",
     "DATASHEET.md",
+    "CARD.md",
+    "SHA256SUMS",
     // Records.
     "findings.json",
     "verdict.html",
@@ -50,7 +52,8 @@ const FILES: [&str; 33] = [
 ];
 
 /// Folders whose files all have one of some endings.
-const FILLED: [(&str, &[&str]); 4] = [
+const FILLED: [(&str, &[&str]); 5] = [
+    ("records", &["parquet"]),
     ("figures", &["svg", "png", "gif"]),
     ("frames", &["npy"]),
     ("failed", &["txt"]),

@@ -17,11 +17,12 @@ pub(crate) enum Kind {
     Campaign,
     Validation,
     Comparison,
+    Detection,
     Analysis,
 }
 
 /// A kind of folder: the files that mark it, its page, and a word for it.
-const KINDS: [(Kind, &[&str], &str, &str); 6] = [
+const KINDS: [(Kind, &[&str], &str, &str); 7] = [
     (Kind::Ensemble, &["ensemble.json"], "report.html", "ensemble"),
     (Kind::Run, &["run.json"], "report.html", "run"),
     (Kind::Campaign, &["runs.parquet", "campaign.ron"], "index.html", "campaign"),
@@ -32,6 +33,7 @@ const KINDS: [(Kind, &[&str], &str, &str); 6] = [
         "validation",
     ),
     (Kind::Comparison, &["compare.json"], "report.html", "comparison"),
+    (Kind::Detection, &["detect.json"], "report.html", "detection"),
     (Kind::Analysis, &["findings.json"], "report.html", "record"),
 ];
 
@@ -107,6 +109,19 @@ pub(crate) fn items(folder: &Path) -> Vec<Item> {
     items
 }
 
+/// Everything of ours below `runs/` and in the folders beside it, where `--out` may have put it, the newest first.
+pub(crate) fn all_items(place: &Place) -> Vec<Item> {
+    let runs = place.runs();
+    let beside = runs.parent().filter(|beside| !beside.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut all = items(&runs);
+    all.extend(items(beside).into_iter().map(|item| Item {
+        path: item.path.strip_prefix("./").map_or(item.path.clone(), Path::to_owned),
+        ..item
+    }));
+    all.sort_by(|a, b| b.written.cmp(&a.written).then_with(|| a.name.cmp(&b.name)));
+    all
+}
+
 /// The path of something that is there, whatever it is; a missing one is answered with the likeliest name.
 pub(crate) fn existing(asked: &Path, place: &Place) -> Result<PathBuf> {
     let path = place.locate_run(asked);
@@ -126,7 +141,7 @@ pub(crate) fn find(asked: &Path, place: &Place) -> Result<Item> {
             place.program
         );
     }
-    let all = items(&place.runs());
+    let all = all_items(place);
     let asked = asked.display().to_string();
     let distance = |item: &&Item| strsim::levenshtein(&item.name, &asked);
     let meant = all.iter().min_by_key(distance).filter(|item| distance(item) <= 3);

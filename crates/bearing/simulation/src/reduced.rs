@@ -50,7 +50,7 @@ impl Model for Reduced {
         watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(Self, Setup), Error> {
         let started = (with.host.wall_s)();
-        let (ReducedMesh { reduction, parts, moved, between_rollers, warning }, from_cache) =
+        let (ReducedMesh { reduction, parts, moved, between_rollers, warning, .. }, from_cache) =
             cache::reduced_mesh(&with.scene.written, with.runs())?;
         with.enter("preload", watch);
         let scene = with.scene;

@@ -24,10 +24,12 @@ mod refusal;
 mod refused;
 mod split;
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::run_dir::Keep;
-use design::{Rows, Variants};
+use design::{Column, Rows, Times, Variants};
 use document::unreadable;
 pub use label::Label;
 use refusal::{CAMPAIGN, File, varies};
@@ -69,6 +71,22 @@ group! {
         split: Split = Split::default();
         /// Files that are kept.
         keep: Keep = Keep::All;
+        /// What makes its tables a data set to hand on.
+        data_set: Option<DataSet> = None;
+    }
+}
+
+group! {
+    /// A data set to hand on: records in parts, a row a record, with a card and checksums.
+    pub struct DataSet {
+        /// Its title.
+        pub title: String = String::new(), required();
+        /// Licence, as SPDX names it.
+        pub licence: String = String::new(), required();
+        /// How to cite it.
+        pub citation: String = String::new(), required();
+        /// Files into which its records are parted.
+        pub parts: usize = 16, within(1.0, 1000.0);
     }
 }
 
@@ -102,6 +120,8 @@ pub struct Campaign {
     pub keep: Keep,
     /// Fields of the scene's file in whose place each bearing brings its own.
     pub replaced: Vec<OfBearing>,
+    /// What makes its tables a data set to hand on.
+    pub data_set: Option<DataSet>,
 }
 
 /// A field of the scene's file that the bearings of a campaign replace.
@@ -143,11 +163,11 @@ impl Campaign {
     /// the scene that it starts from, and values of the wrong type. An impossible scene is no error here: its
     /// variant carries the reason.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::read_keeping(path, None)
+        Self::read_first(path, None, usize::MAX)
     }
 
-    /// As [`Campaign::read`], of the file as if it had this `keep`.
-    pub fn read_keeping(path: &Path, keep: Option<Keep>) -> Result<Self, SceneError> {
+    /// As [`Campaign::read`], of the file as if it had this `keep`; at `most` as many runs, the first ones.
+    pub fn read_first(path: &Path, keep: Option<Keep>, most: usize) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =
             std::fs::read_to_string(path).map_err(|e| unreadable(&shown, &CAMPAIGN, refusal::FILE, &e))?;
@@ -162,11 +182,15 @@ impl Campaign {
                 (None, None) => {}
             }
         }
-        Self::parse(&text, &shown, path.parent().unwrap_or(Path::new("")))
+        Self::of_text(&text, &shown, path.parent().unwrap_or(Path::new("")), most)
     }
 
     /// The campaign of a `text` that is to lie in `folder` as a file called `name`.
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
+        Self::of_text(text, name, folder, usize::MAX)
+    }
+
+    fn of_text(text: &str, name: &str, folder: &Path, most: usize) -> Result<Self, SceneError> {
         let (file, place): (Text, _) = File::read(name, text, &CAMPAIGN)?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
@@ -188,28 +212,33 @@ impl Campaign {
         }
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
-        let rows =
-            file.variants.rows(file.seed, folder, &place).map_err(|no| place.refuse(&no.at, no.why))?;
+        let mut rows = file
+            .variants
+            .rows(file.seed, folder, &place, &measures(&file, base.as_deref()))
+            .map_err(|no| place.refuse(&no.at, no.why))?;
         check_fields(&rows, &place)?;
         let count = rows.values.len() * file.starts;
         if count == 0 || count > MOST_RUNS {
             return refuse("variants", format!("make {count} runs; 1 to {MOST_RUNS} are possible"));
         }
-        let runs = variants(&file, base.as_deref(), &rows, &place)?;
+        rows.values.truncate(most.div_ceil(file.starts));
+        let mut runs = variants(&file, base.as_deref(), &rows, &place)?;
+        runs.truncate(most);
         let replaced = base.as_deref().map_or_else(Vec::new, |base| of_bearings(base, &file, &rows));
-        let fields = rows.fields.into_iter().map(|(field, _)| field).collect();
+        let fields = rows.columns.into_iter().map(|column| column.name).collect();
         let text = text.to_owned();
-        Ok(Self { name: file.name, text, fields, runs, seed: file.seed, keep: file.keep, replaced })
+        let Text { name, seed, keep, data_set, .. } = file;
+        Ok(Self { name, text, fields, runs, seed, keep, replaced, data_set })
     }
 }
 
 /// Fields that no scene has, or that vary twice.
 fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
-    for (column, (field, _)) in rows.fields.iter().enumerate() {
-        if let Some(problem) = scene_file::unknown_field(field) {
+    for (column, Column { name: field, is_field, .. }) in rows.columns.iter().enumerate() {
+        if let Some(problem) = scene_file::unknown_field(field).filter(|_| *is_field) {
             return Err(place.field(problem, rows, column));
         }
-        if rows.fields[..column].iter().any(|(before, _)| before == field) {
+        if rows.columns[..column].iter().any(|before| before.name == *field) {
             let why = format!(
                 "`{field}` is named twice: a field varies in one way, and is one column of the tables"
             );
@@ -223,9 +252,28 @@ fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Numbers of bearings that ranges are multiples of, each scene read once.
+fn measures<'a>(
+    file: &'a Text,
+    base: Option<&'a Path>,
+) -> impl Fn(Option<&str>, Times) -> Result<f64, String> + 'a {
+    let known: RefCell<BTreeMap<Option<String>, Scene>> = RefCell::default();
+    move |bearing, times| {
+        let mut known = known.borrow_mut();
+        let named = bearing.map(str::to_owned);
+        if !known.contains_key(&named) {
+            let own = bearing.map(|bearing| format!("bearing={bearing}"));
+            let set: Vec<String> = file.set.iter().cloned().chain(own).collect();
+            let scene = scene_file::readable(base, &set).map_err(|why| why.to_string())?;
+            known.insert(named.clone(), scene);
+        }
+        Ok(times.of(&known[&named]))
+    }
+}
+
 /// Fields of the scene at `base` that its variants replace by naming another bearing.
 fn of_bearings(base: &Path, file: &Text, rows: &Rows) -> Vec<OfBearing> {
-    let column = rows.fields.iter().position(|(field, _)| field == "bearing");
+    let column = rows.columns.iter().position(|column| column.name == "bearing");
     let mut seen: Vec<Option<&String>> = Vec::new();
     let mut all: Vec<OfBearing> = Vec::new();
     for (row, values) in rows.values.iter().enumerate() {
@@ -251,8 +299,7 @@ fn of_bearings(base: &Path, file: &Text, rows: &Rows) -> Vec<OfBearing> {
 impl Text {
     /// All overrides of a variant.
     fn overrides(&self, rows: &Rows, row: usize) -> Vec<String> {
-        let assigned = (0..rows.fields.len()).map(|column| rows.argument(row, column));
-        self.set.iter().cloned().chain(assigned).collect()
+        self.set.iter().cloned().chain(rows.sets[row].iter().flatten().cloned()).collect()
     }
 }
 

@@ -44,7 +44,8 @@ impl FormDeviation<'_> {
     /// The part with its surface of that name changed.
     ///
     /// # Errors
-    /// [`Error::Tangled`] when the surface is so steep or so deep that an element turns inside out.
+    /// [`Error::Tangled`] when the surface is so steep or so deep that an element turns inside out; not of a part
+    /// that had such elements before ([`Annulus::unshaped_part`](crate::Annulus::unshaped_part)).
     ///
     /// # Panics
     /// If the part has no surface of that name.
@@ -75,7 +76,7 @@ impl FormDeviation<'_> {
         if !walls.is_empty() {
             self.shape(near, &walls, nodes.len(), part, &mut moved);
         }
-        match inside_out(&moved) {
+        match inside_out(&moved).filter(|_| inside_out(part).is_none()) {
             None => Ok(moved),
             Some((element, area)) => {
                 let advice = "make the deviation shallower or longer, or use more facets";

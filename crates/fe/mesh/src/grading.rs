@@ -134,7 +134,7 @@ impl Annulus {
             Circle::Outer => grid.seen_from_outside().inner_facet(),
         };
         let finest = facet.min(grid.layer());
-        groove::cut(&grid, &self.grooves, &lattice.places, enough(finest), &mut part)?;
+        groove::cut(&grid, &self.grooves, &lattice.places, Some(enough(finest)), &mut part)?;
         sound("annulus", part)
     }
 }

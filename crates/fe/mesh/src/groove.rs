@@ -83,12 +83,12 @@ pub(crate) fn circle_of(grooves: &[Groove]) -> Result<Option<Circle>, Error> {
 
 /// Cuts grooves into an annulus by moving its nodes. The first of them are those of the grooves' surface,
 /// `places` has one entry per node, and where cells are put into order one by one, those of the length
-/// `enough` [m] need not become larger.
+/// `enough` [m] need not become larger; `None` leaves all cells as they fall.
 pub(crate) fn cut(
     grid: &PolarGrid,
     grooves: &[Groove],
     places: &[Place],
-    enough: f64,
+    enough: Option<f64>,
     part: &mut Part,
 ) -> Result<(), Error> {
     let Some(circle) = circle_of(grooves)? else { return Ok(()) };
@@ -111,6 +111,7 @@ pub(crate) fn cut(
         (part.x[at], part.y[at]) = (r * cos, r * sin);
     }
     plan.place_walls(grid, part);
+    let Some(enough) = enough else { return Ok(()) };
     for cut in &plan.cuts {
         shape(grid, cut, places, enough, &plain, part);
     }

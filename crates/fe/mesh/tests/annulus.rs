@@ -397,3 +397,24 @@ fn by_hand_sloped_walls_are_as_wide_as_their_slope_asks() {
     };
     assert!(matches!(ring.part(), Err(Error::OutOfRange { field: "slope", .. })));
 }
+
+#[test]
+fn invariant_a_ring_whose_cells_are_not_shaped_has_the_same_surfaces() {
+    let ring = |circle| Annulus {
+        inner_radius: 0.1,
+        outer_radius: 0.11,
+        facets: 400,
+        layers: 6,
+        start_angle: 0.0,
+        grooves: vec![Groove { circle, ..GROOVE }],
+    };
+    for ring in [Circle::Inner, Circle::Outer].map(ring) {
+        let [shaped, not] = [ring.part(), ring.unshaped_part()].map(|part| part.expect("a ring"));
+        assert_eq!(shaped.surfaces, not.surfaces);
+        for &n in shaped.surfaces.iter().flat_map(|(_, surface)| &surface.nodes) {
+            let n = n as usize;
+            assert_eq!([shaped.x[n], shaped.y[n]], [not.x[n], not.y[n]]);
+        }
+        assert!((shaped.area() - not.area()).abs() < 1e-12 && shaped.x != not.x);
+    }
+}

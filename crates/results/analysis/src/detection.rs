@@ -70,6 +70,9 @@ pub struct Detection {
     pub lengths: Vec<OfLength>,
     /// Records of the sound bearing in which the same family is claimed.
     pub sound: Option<Share>,
+    /// Whether the machine has no background, so that nothing but the sensor's noise hides a spall.
+    #[serde(default)]
+    pub silent: bool,
     /// The answer.
     pub smallest: Smallest,
 }
@@ -171,7 +174,13 @@ fn counted(of: Option<&OfLength>, record_s: f64) -> String {
 pub fn in_words(detection: &Detection) -> String {
     let Detection { record_s, smallest, .. } = detection;
     let of = detection.of.as_str();
-    match smallest {
+    let silent = if detection.silent {
+        " The machine has no background, in which a spall shows later: `stribeck machine` with a record of the healthy \
+         machine gives it one."
+    } else {
+        ""
+    };
+    let answer = match smallest {
         Smallest::Between { length_mm, low_mm, high_mm } => {
             let interval = match (low_mm, high_mm) {
                 (Some(low), Some(high)) => format!("90 % between {low:.2} and {high:.2} mm"),
@@ -191,7 +200,8 @@ pub fn in_words(detection: &Detection) -> String {
             "Even the longest spall that was tried, {mm:.2} mm, is found in {} only, {of}: it takes a longer one, or a nearer sensor.",
             counted(detection.lengths.last(), *record_s)
         ),
-    }
+    };
+    answer + silent
 }
 
 #[cfg(test)]
@@ -227,6 +237,26 @@ mod tests {
         let (curve, found) = smallest(&records, 1).expect("lengths");
         assert!(records.windows(2).all(|pair| curve.at(pair[0].0) < curve.at(pair[1].0)));
         assert_eq!(smallest(&records, 1), Some((curve, found)));
+    }
+
+    #[test]
+    fn behaves_the_answer_says_that_a_machine_has_no_background() {
+        let answer = |silent| {
+            in_words(&Detection {
+                version: VERSION,
+                scene: "a".to_owned(),
+                family: "BPFO".to_owned(),
+                of: "of a 6205".to_owned(),
+                record_s: 1.0,
+                seed: 1,
+                lengths: Vec::new(),
+                sound: None,
+                silent,
+                smallest: Smallest::Below(0.3),
+            })
+        };
+        assert!(answer(true).ends_with("gives it one.") && answer(true).contains("has no background"));
+        assert!(!answer(false).contains("background"));
     }
 
     #[test]

@@ -89,6 +89,31 @@ fn roundtrip_numbers_and_gaps() {
     }
 }
 
+/// pyarrow and polars read a column of series, an empty one among them.
+#[test]
+fn peer_series_are_read_by_others() {
+    let desk = Scratch::create("formats-series");
+    let path = desk.join("a.parquet");
+    let series = vec![vec![1.5, -2.25, 1e-3], vec![], vec![7.0; 5000]];
+    let columns = [
+        Column { name: "run".into(), values: Values::Count(vec![Some(1), Some(2), Some(3)]) },
+        Column { name: "a".into(), values: Values::Series(series) },
+    ];
+    parquet::write_table(&path, &columns, &[]).unwrap();
+    assert!(Recording::open(&path).unwrap().notes[0].contains("it holds lists"));
+    for (module, read) in [
+        ("pyarrow", "import pyarrow.parquet as p; a = p.read_table(path)['a'].to_pylist()"),
+        ("polars", "import polars as p; a = p.read_parquet(path)['a'].to_list()"),
+    ] {
+        let Some(python) = python_with(&[module]) else { continue };
+        let script = format!(
+            "import sys; path = sys.argv[1]; {read}; assert a[0][:2] == [1.5, -2.25] and a[1] == [] and a[2] == [7.0] * 5000, a[:2]"
+        );
+        let run = Command::new(&python).args(["-c", &script]).arg(&path).output().unwrap();
+        assert!(run.status.success(), "{module}: {}", String::from_utf8_lossy(&run.stderr));
+    }
+}
+
 #[test]
 fn roundtrip_whole_numbers_keep_samples_to_half_a_step_and_clip() {
     let folder = Scratch::create("formats-pcm");

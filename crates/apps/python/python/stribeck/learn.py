@@ -15,6 +15,7 @@ nor bearing matters (``Windows.features``), and a bearing is in one part of a sp
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -76,6 +77,19 @@ class Windows:
     def __getitem__(self, at: int) -> tuple[Any, int]:
         """Features [float32] and label of a window."""
         return self.features[at].astype(np.float32), int(self.labels[at])
+
+    def take(self, places: Any) -> "Windows":
+        """The windows at these places."""
+        places = [int(at) for at in places]
+        columns = [[of[at] for at in places] for of in (self.samples, self.rates, self.speeds)]
+        return Windows(*columns, self.labels[places], [str(self.bearings[at]) for at in places], self.bearing)
+
+    def split(self, train: Any, test: Any) -> tuple["Windows", "Windows"]:
+        """Windows at the places of training and of test; warns of what stands on both sides (``leaks``)."""
+        parts = self.take(train), self.take(test)
+        for leak in leaks(parts[0].samples, parts[1].samples, parts[0].bearings, parts[1].bearings):
+            warnings.warn(leak, LeakWarning, stacklevel=2)
+        return parts
 
     def __repr__(self) -> str:
         counts = {kind: int((self.labels == n).sum()) for n, kind in enumerate(CLASSES)}
@@ -196,6 +210,38 @@ def by_bearing(bearings: Sequence[str], labels: Any = None, folds: int = 3, seed
     fold = np.array([part[name] for name in bearings])
     for n in range(folds):
         yield np.flatnonzero(fold != n), np.flatnonzero(fold == n)
+
+
+class LeakWarning(UserWarning):
+    """Training and test are not independent: the score is of memory, not of a diagnosis."""
+
+
+_BLOCK = 16
+
+
+def leaks(train: Sequence[Any], test: Sequence[Any], train_bearings: Sequence[str] = (), test_bearings: Sequence[str] = ()) -> list[str]:
+    """What stands on both sides of a split, a sentence each: bearings by their names, and windows that share samples, whatever they are
+    cut from. ``train`` and ``test`` are windows [arrays of samples]; shifted or overlapping ones are found from 32 common samples on."""
+    found = []
+    both = sorted(set(map(str, train_bearings)) & set(map(str, test_bearings)))
+    if both:
+        named = ", ".join(both[:5]) + (", …" if len(both) > 5 else "")
+        found.append(f"{len(both)} bearings stand on both sides of the split: {named}; split by bearing, as by_bearing does")
+    known = set()
+    for window in train:
+        blocks = np.ascontiguousarray(np.ravel(window), dtype=float)
+        blocks = blocks[: len(blocks) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+        known.update(block.tobytes() for block in blocks[np.ptp(blocks, axis=1) > 0])
+    shared = 0
+    for window in test:
+        samples = np.ascontiguousarray(np.ravel(window), dtype=float)
+        # Of two windows that overlap, the beginning or the end of one lies in the other.
+        last = max(len(samples) - 2 * _BLOCK + 1, 0)
+        starts = {*range(min(_BLOCK, last)), *range(max(last - _BLOCK, 0), last + _BLOCK)}
+        shared += any(samples[at : at + _BLOCK].tobytes() in known for at in starts if at + _BLOCK <= len(samples))
+    if shared:
+        found.append(f"{shared} of {len(test)} windows of the test share samples with those of training: cut windows after the split")
+    return found
 
 
 def macro_f1(truth: Any, said: Any) -> float:

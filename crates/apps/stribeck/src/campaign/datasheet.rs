@@ -8,10 +8,12 @@ use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::Defect;
 use stribeck_diagnosis::quantity::Entry;
 use stribeck_scene::scene::{ModelScene, Scene};
-use stribeck_store::campaign::Campaign;
+use stribeck_store::campaign::{Campaign, DataSet};
 use stribeck_store::run_dir::Keep;
 
-use super::tables::{EVENTS, RUNS, SIGNALS, Written};
+use super::checksums::CHECKSUMS;
+use super::tables::{EVENTS, RECORDS, RUNS, SIGNALS, Written};
+use super::{CAMPAIGN, DATASHEET};
 
 /// The page in Markdown.
 pub(super) fn text(campaign: &Campaign, rows: &[OneOfMany], written: &Written) -> String {
@@ -72,8 +74,53 @@ pub(super) fn text(campaign: &Campaign, rows: &[OneOfMany], written: &Written) -
             page += &format!("| `{column}` | {unit} | {} |\n", meaning(column, &known));
         }
     }
+    if let Some(DataSet { licence, citation, .. }) = &campaign.data_set {
+        page += &format!(
+            "\n## Questions of a data sheet\n\n\
+             After Gebru et al., *Datasheets for datasets*, Communications of the ACM 64(12), 2021.\n\n\
+             - **Motivation.** Records of known cause, size, load, speed and path, in equal numbers of each kind, to \
+             train and to try diagnoses before they meet measured ones.\n\
+             - **Composition.** An instance is a record of one machine's sensor; none is left out but those that \
+             `status` names. No record is measured, and none is of persons.\n\
+             - **Collection.** Drawn by the campaign below, from its seeds, and simulated.\n\
+             - **Preprocessing.** The first 0.05 s of a run, in which its bearing settles, are left out. Nothing is \
+             filtered or scaled but by the machine's sensor.\n\
+             - **Uses.** Not as the only evidence that a diagnosis works: simulated impacts differ less from one \
+             another than real ones. Records of one bearing, or of one machine, belong on one side of a split.\n\
+             - **Distribution and maintenance.** {licence}. Cite as: {citation} A new version is made by a new commit, \
+             whose name it has.\n"
+        );
+    }
     page += &format!("\n## The campaign\n\n```ron\n{}\n```\n", campaign.text.trim_end());
     page
+}
+
+/// The card of a data set, with the head that Hugging Face reads in a `README.md`.
+pub(super) fn card(data_set: &DataSet, campaign: &Campaign, rows: &[OneOfMany], written: &Written) -> String {
+    let DataSet { title, licence, citation, .. } = data_set;
+    let complete = rows.iter().filter(|one| one.is_complete()).count();
+    let first = rows.iter().filter(|one| one.is_complete()).find_map(|one| one.row.n_samples).unwrap_or(0);
+    format!(
+        "---\nlicense: {}\npretty_name: {title}\ntags: [bearings, vibration, fault-diagnosis, simulated]\n---\n\n\
+         # {title}\n\n\
+         {complete} records, all simulated by Stribeck {}, in {} files `{RECORDS}/part-*.parquet`: a row a record, with \
+         `run`, `split`, `bearing`, `fault_location`, `rate_hz`, the acceleration `a_m_s2` [m/s²] and the pulses of a \
+         tachometer, one a turn, `turns_s` [s]. `{RUNS}` has every label with its unit, joined by `run`; \
+         [{DATASHEET}]({DATASHEET}) says what each is, how the records were made, and what they are not.\n\n\
+         ```python\n\
+         import polars as pl, torch\n\
+         records = pl.read_parquet(\"{RECORDS}/*.parquet\").join(pl.read_parquet(\"{RUNS}\"), on=\"run\")\n\
+         x = records[\"a_m_s2\"].list.to_array({first}).to_numpy()   # numpy, a row a record\n\
+         y = records[\"fault_location\"].to_numpy()\n\
+         tensor = torch.from_numpy(x)\n\
+         ```\n\n\
+         Licence: {licence}. Cite as: {citation} `sha256sum --check {CHECKSUMS}` finds damage. The same commit makes the \
+         same bytes again, by `stribeck sweep {CAMPAIGN}` of the campaign `{}`.\n",
+        licence.to_lowercase(),
+        programs(rows),
+        written.records.len(),
+        campaign.name
+    )
 }
 
 /// What each column is, by its name.

@@ -1,6 +1,7 @@
 //! The data set of a campaign: a table with a row for each run, one with a row for each event, one with the
 //! sampled signals. Columns are those that `stribeck_analysis::runs` declares.
 
+mod records;
 mod signals;
 
 use std::collections::BTreeSet;
@@ -14,6 +15,7 @@ use stribeck_analysis::runs::{EventRow, OneOfMany, RunRow, Truth};
 use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::quantity::{Entry, Kind, Part};
 use stribeck_formats::parquet::{Column, Values, Writer, write_table};
+use stribeck_scene::scene_file::unknown_field;
 use stribeck_store::campaign::{Campaign, Label, Variant};
 use stribeck_store::run_dir::{Keep, RunDir};
 use stribeck_store::trace::TraceFile;
@@ -25,6 +27,8 @@ use crate::place::shown;
 pub(super) const RUNS: &str = "runs.parquet";
 pub(super) const EVENTS: &str = "events.parquet";
 pub(super) const SIGNALS: &str = "signals.parquet";
+/// Folder of the records of a data set.
+pub(super) const RECORDS: &str = "records";
 
 /// Events that are written at a time: of many short runs, or of one long run with its predecessors.
 const GROUP: usize = 1 << 16;
@@ -34,6 +38,8 @@ pub(super) struct Written {
     pub(super) runs: Vec<String>,
     pub(super) events: Vec<String>,
     pub(super) signals: Vec<String>,
+    /// Files of the records of a data set.
+    pub(super) records: Vec<String>,
 }
 
 pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Result<Vec<OneOfMany>> {
@@ -100,8 +106,11 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[OneOfMany]) ->
     replace(&folder.path().join(RUNS), |path| Ok(write_table(path, &of_runs, &notes)?))?;
     replace(&folder.path().join(EVENTS), |path| events(folder.path(), path, rows, &notes))?;
     let events = declared::<EventRow>(std::iter::empty());
-    let mut written = Written { runs: names(&of_runs), events: names(&events), signals: Vec::new() };
-    if campaign.keep != Keep::Numbers {
+    let mut written =
+        Written { runs: names(&of_runs), events: names(&events), signals: Vec::new(), records: Vec::new() };
+    if let Some(data_set) = &campaign.data_set {
+        written.records = records::write(folder.path(), rows, data_set.parts, &notes)?;
+    } else if campaign.keep != Keep::Numbers {
         let signals = signals::names(folder.path(), rows)?;
         replace(&folder.path().join(SIGNALS), |path| {
             signals::write((folder.path(), path), rows, &signals, &notes)
@@ -129,6 +138,7 @@ fn declared<T: Part>(rows: impl Iterator<Item = Value>) -> Vec<Column> {
                 Values::Count(of) => of.push(cell.and_then(Value::as_i64)),
                 Values::Flag(of) => of.push(cell.and_then(Value::as_bool)),
                 Values::Number(of) => of.push(cell.and_then(Value::as_f64)),
+                Values::Series(_) => {}
             }
         }
     }
@@ -146,7 +156,9 @@ fn of_runs(campaign: &Campaign, rows: &[OneOfMany]) -> Vec<Column> {
             Some(numbers) => Values::Number(numbers.into_iter().map(Some).collect()),
             None => Values::Text(rows.iter().map(text).collect()),
         };
-        all.push(Column { name: format!("scene.{field}"), values });
+        // A name that is no field is drawn.
+        let of = if unknown_field(field).is_some() { "drawn" } else { "scene" };
+        all.push(Column { name: format!("{of}.{field}"), values });
     }
     let names: BTreeSet<&String> = rows.iter().flat_map(|one| one.numbers.keys()).collect();
     all.extend(names.into_iter().map(|name| Column {

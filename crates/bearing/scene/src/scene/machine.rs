@@ -178,6 +178,11 @@ impl MachineScene {
             .collect()
     }
 
+    /// Whether it has a background, and that is none: as it is fitted without a record of the healthy machine.
+    pub fn is_silent(&self) -> bool {
+        !self.background.is_empty() && self.background.iter().all(|band| band.rms_m_s2 == 0.0)
+    }
+
     /// What of it is usual and not given, in words; `None` where nothing is.
     pub fn assumed(&self) -> Option<String> {
         let path = (self.gains.is_empty() && self.modes.is_empty()).then_some("path to the sensor");
@@ -229,6 +234,23 @@ mod tests {
         assert_eq!(*machine(&scene), MachineScene { seed: 9, ..fitted });
         assert_eq!(Scene::parse(&scene.to_ron(), "again").expect("a scene"), scene);
         assert_eq!(scene.housing.mass(&scene.bearing).expect("rigid").mass_kg, 7.0);
+    }
+
+    /// A machine fitted on records of 51.2 kHz was refused by what `new` writes: "rate_hz is 51200, outside its range".
+    #[test]
+    fn issue_a_run_samples_as_fast_as_the_machine_of_a_file() {
+        let folder = Scratch::create("fast-machine");
+        for rate_hz in [51_200.0, 65_536.0, 44_100.0] {
+            let sensor = MachineSensorScene { rate_hz, ..MachineSensorScene::default() };
+            let fitted = MachineScene { sensor, ..MachineScene::default() };
+            std::fs::write(folder.join("motor.ron"), fitted.to_ron()).expect("room");
+            let text = format!("({BASE}, output: (interval_us: 20), housing: machine(file: \"motor.ron\"))");
+            std::fs::write(folder.join("x.ron"), text).expect("room");
+            let scene = Scene::read(folder.join("x.ron")).expect("a scene");
+            assert_eq!(machine(&scene).sensor.rate_hz, rate_hz);
+            let expected = rate_hz.max(50_000.0);
+            assert!((1e6 / scene.output.interval_us / expected - 1.0).abs() < 1e-12, "{rate_hz}");
+        }
     }
 
     #[test]

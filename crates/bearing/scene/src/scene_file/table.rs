@@ -60,6 +60,7 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, sources: &Sources) -> Resul
         && !machine.file.is_empty()
     {
         read_machine(machine, folder, sources)?;
+        scene.sample_for_machine();
     }
     for (path, mesh) in
         [(OUTER_RING_MESH, &mut scene.outer_ring_mesh), (INNER_RING_MESH, &mut scene.inner_ring_mesh)]
@@ -96,6 +97,19 @@ fn read_machine(machine: &mut MachineScene, folder: &Path, sources: &Sources) ->
     }
     *machine = std::mem::take(machine).before(MachineScene::read(&file)?);
     Ok(())
+}
+
+impl Scene {
+    /// Samples at least as often as the sensor of its machine, which a file has brought.
+    pub fn sample_for_machine(&mut self) {
+        let Some(machine) = self.housing.machine() else { return };
+        let rate_hz = machine.sensor.rate_hz;
+        if 1e6 / self.output.interval_us < rate_hz {
+            let interval_us = 1e6 / rate_hz;
+            self.output.interval_us =
+                if 1e6 / interval_us < rate_hz { interval_us.next_down() } else { interval_us };
+        }
+    }
 }
 
 /// The file of a machine.

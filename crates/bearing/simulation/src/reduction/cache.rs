@@ -1,5 +1,5 @@
 //! Reduced meshes of earlier runs, kept beside their folders: one serves every start, speed and duration of
-//! the same mesh under the same load.
+//! the same mesh under the same load, and every load and spall where the outer ring does not deform.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -22,10 +22,11 @@ use crate::reduction::{reduce::ReducedMesh, structure::modes_khz};
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced vL\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced vM\n";
 
 /// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
-/// their defaults. Rollers lie symmetrically about the first groove, as few as may be in it.
+/// their defaults. Rollers lie symmetrically about the first groove, as few as may be in it. A ring that does not
+/// deform has neither groove nor preload: its load is as large as the bearing may carry, for which contacts are wide.
 pub fn reference(scene: &Scene) -> Scene {
     let ContactScene {
         method,
@@ -39,7 +40,8 @@ pub fn reference(scene: &Scene) -> Scene {
         ..
     } = scene.contact.clone();
     let solver = SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() };
-    let groove = scene.grooves().into_iter().next();
+    let is_rigid = scene.housing.is_rigid();
+    let groove = scene.grooves().into_iter().next().filter(|_| !is_rigid);
     let middle = groove.as_ref().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
     let mut bearing = scene.bearing.clone();
     // With two of them as far from the middle as they can be, or with one in it.
@@ -65,12 +67,12 @@ pub fn reference(scene: &Scene) -> Scene {
         },
         outer_ring_mesh: scene.outer_ring_mesh.clone(),
         inner_ring_mesh: scene.inner_ring_mesh.clone(),
-        defect: scene.defect.clone(),
+        defect: scene.defect.clone().filter(|_| !is_rigid),
         // All others change places, hardly the rings' stiffness: outlines get them later.
-        defects: scene.defects.iter().filter(|deviation| deviation.groove().is_some()).cloned().collect(),
+        defects: scene.defects.iter().filter(|d| !is_rigid && d.groove().is_some()).cloned().collect(),
         material: scene.material.clone(),
         mesh,
-        operation: between(scene),
+        operation: at_rest(scene),
         contact: ContactScene {
             method,
             surface,
@@ -100,11 +102,24 @@ fn spacings(scene: &Scene, groove: &DefectScene) -> f64 {
     groove.length_mm * bearing.rollers as f64 / (PI * race_mm)
 }
 
-/// At rest, half-way between the least and the largest load of a profile: linearised there, the reduction
-/// errs least over all of them. The speed adds a few newtons by which idle rollers press outwards; they are
-/// in the equilibrium that a run starts from, so that one reduction serves all speeds.
-fn between(scene: &Scene) -> OperationScene {
-    let fields = OperationScene {
+/// Load [N] that the reduction of a scene is for: half-way between the least and the largest one of a profile, so that
+/// it errs least over all of them.
+pub(crate) fn preload_n(scene: &Scene) -> f64 {
+    match scene.varying_duty() {
+        Some(duty) => duty.load_range_n(LONGEST_RUN_S).iter().sum::<f64>() * 0.5,
+        None => scene.operation.load_n,
+    }
+}
+
+/// At rest. The speed adds a few newtons by which idle rollers press outwards; they are in the equilibrium that a run
+/// starts from, so that one reduction serves all speeds.
+fn at_rest(scene: &Scene) -> OperationScene {
+    let load_n = match scene.housing.is_rigid() {
+        true => scene.static_rating_n().max(scene.duty().load_range_n(LONGEST_RUN_S)[1]),
+        false => preload_n(scene),
+    };
+    OperationScene {
+        load_n,
         speed_rpm: 0.0,
         outer_speed_rpm: 0.0,
         speed_profile: None,
@@ -112,10 +127,7 @@ fn between(scene: &Scene) -> OperationScene {
         load_profile: None,
         rotating_load: None,
         ..scene.operation.clone()
-    };
-    let Some(duty) = scene.varying_duty() else { return fields };
-    let [least, most] = duty.load_range_n(LONGEST_RUN_S);
-    OperationScene { load_n: 0.5 * (least + most), ..fields }
+    }
 }
 
 /// The reduced mesh of a scene, and whether it was cached. `runs` is the parent of the run's folder. Of
@@ -124,8 +136,13 @@ fn between(scene: &Scene) -> OperationScene {
 /// # Errors
 /// When it cannot be made. One that cannot be cached is made again next time.
 pub fn reduced_mesh(scene: &Scene, runs: Option<&Path>) -> Result<(ReducedMesh, bool), Error> {
-    let reference = reference(scene);
-    let make = || ReducedMesh::new(&reference.resolve());
+    let (reference, resolved) = (reference(scene), scene.resolve());
+    let (healthy, from_cache) = reference_mesh(&reference, runs)?;
+    Ok((healthy.of_scene(&resolved)?, from_cache))
+}
+
+fn reference_mesh(reference: &Scene, runs: Option<&Path>) -> Result<(ReducedMesh, bool), Error> {
+    let make = || ReducedMesh::of_reference(&reference.resolve());
     let Some(file) = runs.map(|runs| file(runs, &reference.hash())) else {
         return Ok((make()?, false));
     };

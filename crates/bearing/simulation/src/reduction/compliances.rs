@@ -3,6 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use serde::{Deserialize, Serialize};
 use stribeck_reduced::modal::{OVERLOAD, compliance::Compliance};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_solver::{Dynamics, statics::Modes, statics::SmallMotions};
@@ -48,12 +49,46 @@ impl Size<'_> {
 }
 
 /// A surface's own flexibility [m/N] about a place, and how far apart its nodes are there [m].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Patch {
     flexibility: Vec<Vec<f64>>,
     spacing: f64,
 }
 
-impl Compliances {
+impl Patch {
+    /// The part of it that a contact with this relative radius [m] may reach.
+    fn within(&self, size: &Size<'_>, radius: f64) -> Vec<Vec<f64>> {
+        let middle = self.flexibility.len() / 2;
+        let half = size.half_count(radius, self.spacing).min(middle);
+        let reached = middle - half..=middle + half;
+        self.flexibility[reached.clone()].iter().map(|row| row[reached.clone()].to_vec()).collect()
+    }
+}
+
+/// Patches of both raceways and of a roller: they depend on no load, up to the one that they are wide enough for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Patches {
+    outer: Patch,
+    inner: Patch,
+    roller: Patch,
+    /// Deflection of a roller by an equal force on its other side [m/N].
+    across: f64,
+}
+
+impl<'a> Size<'a> {
+    fn of(scene: &'a ResolvedScene) -> Self {
+        let load = scene.written.operation.load_n;
+        let most = OVERLOAD * scene.static_load().map_or(load, |load| load.max_roller_n());
+        Self { scene, most: most.clamp(1.0, OVERLOAD * load.max(1.0)) }
+    }
+
+    /// Relative radius of the widest contact of a roller [m].
+    fn widest(&self) -> f64 {
+        self.scene.outer_contact_radius().max(self.scene.inner_contact_radius())
+    }
+}
+
+impl Patches {
     /// Of a bearing taken apart, beside the vertices of its outer raceway [m].
     pub(crate) fn of(
         scene: &ResolvedScene,
@@ -62,32 +97,41 @@ impl Compliances {
         structure: &mut Structure,
         raceway: &[[f64; 2]],
     ) -> Result<Self, Error> {
-        let most =
-            OVERLOAD * scene.static_load().map_or(scene.written.operation.load_n, |load| load.max_roller_n());
-        let size = Size { scene, most: most.clamp(1.0, OVERLOAD * scene.written.operation.load_n.max(1.0)) };
-        let [ro, ri] = [scene.outer_contact_radius(), scene.inner_contact_radius()];
+        let size = Size::of(scene);
         let beside = beside_grooves(scene);
         let outer = outer_patch(&size, extraction, structure, raceway, beside);
         let inner = inner_patch(&size, extraction, dynamics, beside)?;
         let (roller, across) = roller_patch(&size, extraction, dynamics)?;
+        Ok(Self { outer, inner, roller, across })
+    }
+
+    /// The compliances of a scene with these bodies, up to its own loads.
+    pub(crate) fn compliances(&self, scene: &ResolvedScene) -> Compliances {
+        let size = Size::of(scene);
+        let [ro, ri] = [scene.outer_contact_radius(), scene.inner_contact_radius()];
         let penalty = scene.penalty_stiffness * scene.thickness;
         // The penalty of balls takes nearly all of the approach, others about half of it.
         let beyond_rigid = if scene.contact_law == ContactLawKind::Ball { 1.25 } else { 2.0 };
+        let roller = self.roller.within(&size, size.widest());
         let compliance =
             |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64, more: &dyn Fn(f64) -> f64| {
-                let flexibility = [on, &roller.flexibility[..]];
+                let flexibility = [on, &roller[..]];
                 let pressed =
-                    LocalContact { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
+                    LocalContact { spacing: [spacing, self.roller.spacing], flexibility, radius, penalty };
                 curve(&pressed, (size.most, beyond_rigid), across, more)
             };
         let beyond = beyond_lines(scene);
-        let rigid = vec![vec![0.0; roller.flexibility.len()]; roller.flexibility.len()];
-        Ok(Self {
-            outer: compliance(&outer.flexibility, outer.spacing, ro, across, &|force| beyond(0, force)),
-            inner: compliance(&inner.flexibility, inner.spacing, ri, across, &|force| beyond(1, force)),
+        let raceway = |patch: &Patch, radius: f64, side: usize| {
+            let reached = patch.within(&size, radius);
+            compliance(&reached, patch.spacing, radius, self.across, &|force| beyond(side, force))
+        };
+        let rigid = vec![vec![0.0; roller.len()]; roller.len()];
+        Compliances {
+            outer: raceway(&self.outer, ro, 0),
+            inner: raceway(&self.inner, ri, 1),
             // Only its inertia holds the roller on its other side.
-            wall: compliance(&rigid, roller.spacing, scene.roller_radius, 0.0, &|_| 0.0),
-        })
+            wall: compliance(&rigid, self.roller.spacing, scene.roller_radius, 0.0, &|_| 0.0),
+        }
     }
 }
 
@@ -196,8 +240,7 @@ fn roller_patch(
         direction([centre[0] - x, centre[1] - y])
     };
     let spacing = TAU * size.scene.roller_radius / nodes.rim.len() as f64;
-    let widest = size.scene.outer_contact_radius().max(size.scene.inner_contact_radius());
-    let mut own = patch(&nodes.rim, 0, size.half_count(widest, spacing));
+    let mut own = patch(&nodes.rim, 0, size.half_count(size.widest(), spacing));
     let middle = own.len();
     // The node on the other side comes last.
     own.push(nodes.rim[nodes.rim.len() / 2]);

@@ -16,7 +16,8 @@ use stribeck_theory::contact_law::{ContactLawKind, element_mass};
 
 use crate::error::Error;
 use crate::reduction::{
-    compliances::Compliances,
+    cache::{preload_n, reference},
+    compliances::{Compliances, Patches},
     extraction::{Extraction, Preload},
     loads::{Loads, dampers, frame},
     raceway::{self, RacewayNode},
@@ -25,7 +26,8 @@ use crate::reduction::{
     structure::Structure,
 };
 
-/// A mesh that has been preloaded and reduced: the same for every start, speed and duration.
+/// A mesh that has been preloaded and reduced: the same for every start, speed and duration, and where the outer ring
+/// does not deform also for every load and spall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReducedMesh {
     /// The reduced rings, rollers and cage.
@@ -39,34 +41,72 @@ pub struct ReducedMesh {
     pub between_rollers: f64,
     /// Warning of a preload that did not quite come to rest.
     pub warning: Option<String>,
+    /// Flexibilities from which compliances follow.
+    patches: Patches,
 }
 
 impl ReducedMesh {
-    /// Makes the full model of the scene, preloads it and reduces it.
+    /// The reduced mesh of a scene.
     ///
     /// # Errors
     /// When the scene cannot be meshed or preloaded, or modes are not found.
     pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
+        Self::of_reference(&reference(&scene.written).resolve())?.of_scene(scene)
+    }
+
+    /// Makes the full model of a [`reference`], preloads it and reduces it. A ring that does not deform needs no
+    /// preload: nothing is linearised there.
+    pub(crate) fn of_reference(scene: &ResolvedScene) -> Result<Self, Error> {
         let meshed = MeshedParts::new(scene)?;
         let assembly = Assembly::of(scene, &meshed)?;
         let mut bearing = assembly.build(scene, 1)?;
-        let warning = preload(&mut bearing, scene, &assembly.kinematics)?;
+        let warning = match scene.written.housing.is_rigid() {
+            true => None,
+            false => preload(&mut bearing, scene, &assembly.kinematics)?,
+        };
         let mesh = &assembly.model.mesh;
         let (mut extraction, mut parts) = Extraction::of(scene, bearing, mesh)?;
         let moved = std::mem::take(&mut extraction.moved);
-        let (reduction, between_rollers) = reduce(scene, mesh, &extraction, &mut parts)?;
-        Ok(Self { reduction, parts: meshed, moved, between_rollers, warning })
+        let (reduction, patches, between_rollers) = reduce(scene, mesh, &extraction, &mut parts)?;
+        Ok(Self { reduction, parts: meshed, moved, between_rollers, warning, patches })
+    }
+
+    /// What the reduction of its reference becomes in a scene: where the outer ring does not deform, grooves are cut
+    /// into the raceways, forces are those of the scene's load, and compliances reach up to it.
+    pub(crate) fn of_scene(mut self, scene: &ResolvedScene) -> Result<Self, Error> {
+        if !scene.written.housing.is_rigid() {
+            return Ok(self);
+        }
+        self.parts = self.parts.cut(scene)?;
+        let Reduction { outer, inner, constant, external, load, .. } = &mut self.reduction;
+        [*outer, *inner] = self.parts.raceways();
+        let load_n = preload_n(&scene.written);
+        let share = load_n / load.force;
+        for (force, along) in constant.iter_mut().chain(external).zip(load.along.iter().chain(&load.along)) {
+            *force += (share - 1.0) * along;
+        }
+        load.force = load_n;
+        load.along.iter_mut().chain(&mut load.across).for_each(|force| *force *= share);
+        let Compliances { outer, inner, wall } = self.patches.compliances(scene);
+        // What the bodies store under the load at rest, by which the ledger's error is measured.
+        let stored = [outer.curve(), inner.curve()];
+        let under = |force: &f64| stored.iter().map(|curve| curve.energy(*force)).sum::<f64>();
+        self.reduction.strain = scene.static_load().map_or(0.0, |load| load.roller_n.iter().map(under).sum());
+        self.reduction.outer_compliance = outer;
+        self.reduction.inner_compliance = inner;
+        self.reduction.wall_compliance = wall;
+        Ok(self)
     }
 }
 
-/// Reduces a bearing that has been taken apart at its preload. Returns what bends between rollers beyond the
-/// modes, too [m].
+/// Reduces a bearing that has been taken apart at its preload. Returns the patches of its contacts and what bends
+/// between rollers beyond the modes, too [m].
 fn reduce(
     scene: &ResolvedScene,
     mesh: &Mesh,
     from: &Extraction,
     parts: &mut Parts,
-) -> Result<(Reduction, f64), Error> {
+) -> Result<(Reduction, Patches, f64), Error> {
     let count = parts.dynamics.state.x.len();
     let preload = Preload::of(from, parts, mesh, may_close(scene));
     let mut structure = Structure::of(scene, from, &preload, &parts.dynamics)?;
@@ -87,7 +127,8 @@ fn reduce(
     let between_rollers = raceway::between_rollers(&nodes, &dents, scene.rollers);
     let outer = raceway::without_dents(from, &dents);
     let sensors = sensors(from, &mut structure, &outer, count, padded);
-    let compliances = Compliances::of(scene, from, &parts.dynamics, &mut structure, &outer)?;
+    let patches = Patches::of(scene, from, &parts.dynamics, &mut structure, &outer)?;
+    let compliances = patches.compliances(scene);
     let mut squares = vec![0.0; padded];
     squares[..modes].copy_from_slice(structure.squares());
     let reduction = Reduction {
@@ -100,7 +141,7 @@ fn reduce(
         inner: from.nodes.inner.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect(),
         roller: round_rim(scene.roller_radius, from.nodes.rim.len()),
         sensors,
-        constant: loads.constant,
+        constant: if scene.written.housing.is_rigid() { loads.external.clone() } else { loads.constant },
         external: loads.external,
         load: loads.load,
         dampers: dampers(scene, &structure, &preload, padded),
@@ -115,7 +156,7 @@ fn reduce(
         seat: from.seat,
         springs,
     };
-    Ok((reduction, between_rollers))
+    Ok((reduction, patches, between_rollers))
 }
 
 /// Mass [kg] and moment of inertia [kg m²] of balls, for which cylinders of another mass are meshed; `None` for

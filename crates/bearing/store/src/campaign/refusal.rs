@@ -21,7 +21,7 @@ impl File<'_> {
     pub(super) fn field(&self, mut problem: Problem, rows: &Rows, column: usize) -> SceneError {
         problem.place = match &rows.table {
             Some(table) => place_in_file(&table.name, &table.text, table.head(column)),
-            None => self.place(&rows.fields[column].1),
+            None => self.place(&rows.columns[column].at),
         };
         problem.into()
     }
@@ -48,7 +48,8 @@ impl File<'_> {
         let place = match &rows.table {
             Some(table) => table.cell(row, column).map(|cell| place_in_file(&table.name, &table.text, cell)),
             None => {
-                let axis = rows.fields[column].1.trim_end_matches(".field");
+                let at = &rows.columns[column].at;
+                let axis = at.trim_end_matches(".field").trim_end_matches(".name");
                 let written = &rows.values[row][column];
                 let listed = |i: usize| self.tree.get(&format!("{axis}.values[{i}]"));
                 let item = (0..).map_while(listed).find(|node| self.text[node.span.clone()] == **written);
@@ -65,7 +66,7 @@ impl File<'_> {
 /// Column of the value that causes the error of a variant's scene.
 pub(super) fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
     let Place::CommandLine { argument, .. } = &problem.place else { return None };
-    (0..rows.fields.len()).find(|column| rows.argument(row, *column) == *argument)
+    rows.sets[row].iter().position(|set| set.contains(argument))
 }
 
 const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, \

@@ -410,3 +410,82 @@ fn behaves_variants_repair_the_scene_that_they_start_from() {
         values: [0.2])]))";
     assert!(parse(text).unwrap().runs[0].scene.is_ok());
 }
+
+/// Two bearings in two classes with eight points each: every combination has eight, sizes in shares of the spacing and
+/// loads of the rating lie in their ranges, members are few, and a name stands for its number wherever it is written.
+#[test]
+fn by_hand_a_design_is_balanced_and_follows_the_bearing() {
+    let text = "(name: \"b\", set: [\"defect=None\", \"film=None\", \"model=reduced()\"], variants: latin_hypercube(
+        count: 8,
+        each: [
+            (field: \"bearing\", values: [\"6205\", \"NU 210\"]),
+            (name: \"class\", cases: [
+                (name: \"healthy\"),
+                (name: \"outer\", set: [\"defects=[(on: outer, form: spall(length_mm: LENGTH_MM, edge: rectangular))]\"]),
+            ]),
+        ],
+        members: [(
+            name: \"machine\",
+            count: 3,
+            over: [(name: \"KG\", from: 5, to: 20)],
+            set: [\"housing=machine(mass_kg: KG)\"],
+        )],
+        over: [
+            (field: \"operation.load_n\", from: 0.01, to: 0.1, log: true, times: static_rating_n),
+            (name: \"LENGTH_MM\", from: 0.01, to: 0.5, log: true, times: spacing_mm, least: 0.4),
+        ],
+    ))";
+    let campaign = parse(text).unwrap();
+    assert_eq!(campaign.fields, ["bearing", "class", "machine", "operation.load_n", "LENGTH_MM"]);
+    assert_eq!(campaign.runs.len(), 32);
+    let mut counts: BTreeMap<(String, String), usize> = BTreeMap::new();
+    let mut masses: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for run in &campaign.runs {
+        let [bearing, class, machine, load, length] = &run.values[..] else { panic!("{:?}", run.values) };
+        *counts.entry((bearing.clone(), class.clone())).or_default() += 1;
+        let scene = run.scene.as_ref().unwrap();
+        let mass = scene.housing.machine().and_then(|machine| machine.mass_kg).unwrap();
+        masses.entry(machine).or_default().push(mass);
+        let (load, length): (f64, f64) = (load.parse().unwrap(), length.parse().unwrap());
+        let share = load / scene.static_rating_n();
+        assert!((0.0099..0.101).contains(&share) && scene.operation.load_n == load, "{share}");
+        let spacing =
+            std::f64::consts::PI * scene.bearing.inner_race_diameter_mm / scene.bearing.rollers as f64;
+        assert!(length > 0.399 && length < 0.5 * spacing, "{length} of {spacing}");
+        let spalls: Vec<f64> = scene.spalls().iter().map(|spall| spall.length_mm).collect();
+        assert_eq!(spalls, if class == "outer" { vec![length] } else { vec![] });
+    }
+    assert!(counts.len() == 4 && counts.values().all(|count| *count == 8), "{counts:?}");
+    assert!(masses.len() == 3 && masses.values().all(|of| of.iter().all(|kg| *kg == of[0])), "{masses:?}");
+    // The first rows have some of every combination.
+    let first: BTreeMap<_, ()> =
+        campaign.runs[..4].iter().map(|run| (run.values[..2].to_vec(), ())).collect();
+    assert_eq!(first.len(), 4);
+}
+
+#[test]
+fn refuses_axes_that_are_no_list_and_no_range() {
+    for (axis, words) in [
+        ("(values: [1])", "an axis has a `field`, or a `name`"),
+        ("(name: \"length\", from: 1, to: 2)", "in capital letters"),
+        ("(name: \"class\", values: [1])", "takes either `cases"),
+        ("(field: \"operation.load_n\", cases: [(name: \"a\")])", "takes either `values"),
+        ("(field: \"operation.load_n\", name: \"A\", values: [1])", "either a field"),
+    ] {
+        let refused =
+            parse(&format!("(name: \"x\", variants: sobol(count: 2, over: [{axis}]))")).unwrap_err();
+        assert_has(&refused, &[words, "a.ron:1"]);
+    }
+}
+
+#[test]
+fn behaves_a_data_set_names_its_licence() {
+    let with = |of: &str| {
+        parse(&format!(
+            "(name: \"x\", data_set: {of}, variants: grid([(field: \"operation.load_n\", values: [1000])]))"
+        ))
+    };
+    let set = with("(title: \"t\", licence: \"CC-BY-4.0\", citation: \"c\")").unwrap().data_set.unwrap();
+    assert_eq!((set.licence.as_str(), set.parts), ("CC-BY-4.0", 16));
+    assert_has(&with("(title: \"t\")").unwrap_err(), &["licence"]);
+}

@@ -16,7 +16,7 @@ words! {
     pub enum Keep: Copy, Eq, PartialOrd, Ord {
         /// Everything.
         All = "all",
-        /// Of its samples the channels of sensors.
+        /// Of its samples the channels of sensors; of a run with a machine those of its sensor alone.
         Signals = "signals",
         /// No sample.
         Numbers = "numbers",
@@ -52,7 +52,7 @@ impl RunDir {
     pub fn keeps_only(&self, keep: Keep) -> bool {
         match keep {
             Keep::All => true,
-            Keep::Signals => !self.trace().exists() && self.signals().exists(),
+            Keep::Signals => !self.trace().exists() && (self.machine().exists() || self.signals().exists()),
             Keep::Numbers => !self.trace().exists(),
         }
     }
@@ -69,7 +69,8 @@ impl RunDir {
         if self.keeps_only(keep) {
             return Ok(());
         }
-        if keep == Keep::Signals {
+        // The sensor of a machine is the one that there is.
+        if keep == Keep::Signals && !self.machine().exists() {
             let beside = self.path.join(format!("{SIGNALS}{PARTIAL}"));
             TraceFile::open(self.trace())?
                 .copy(&beside, |name| name == "time_s" || name.starts_with(SENSOR))?;

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
-use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, FormDeviation, Grading, Groove, Part};
+use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, FormDeviation, Groove, Part};
 use stribeck_scene::{
     deviation::Relief,
     resolved::{CageGeometry, DefectGeometry, ResolvedScene, pocket_half_width},
@@ -28,40 +28,9 @@ pub struct MeshedParts {
 impl MeshedParts {
     /// Meshes them. They do not depend on the initial position of the rollers.
     pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
+        let outer = ring(scene, DefectRing::Outer, true)?;
+        let inner = ring(scene, DefectRing::Inner, true)?;
         let b = &scene.written.bearing;
-        let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
-            Some(grading) => ring.graded_part(grading),
-            None => ring.part(),
-        };
-
-        let outer_grading = grading::ring(&scene.written.mesh, b.outer_ring_thickness_mm, Circle::Inner);
-        let outer = Annulus {
-            inner_radius: scene.outer_race_radius,
-            outer_radius: scene.outer_race_radius + scene.outer_ring_thickness,
-            facets: facets_around(scene, DefectRing::Outer),
-            layers: grading::layers(&scene.written.mesh, b.outer_ring_thickness_mm),
-            start_angle: 0.0,
-            grooves: grooves_in(scene, DefectRing::Outer),
-        };
-        let outer = match &scene.written.outer_ring_mesh {
-            Some(own) => own_mesh::ring(own, DefectRing::Outer, scene)?,
-            None => made(&outer, &outer_grading)?,
-        };
-
-        let inner_grading = grading::ring(&scene.written.mesh, b.inner_ring_thickness_mm, Circle::Outer);
-        let inner = Annulus {
-            inner_radius: scene.inner_race_radius - scene.inner_ring_thickness,
-            outer_radius: scene.inner_race_radius,
-            facets: facets_around(scene, DefectRing::Inner),
-            layers: grading::layers(&scene.written.mesh, b.inner_ring_thickness_mm),
-            start_angle: 0.0,
-            grooves: grooves_in(scene, DefectRing::Inner),
-        };
-        let inner = match &scene.written.inner_ring_mesh {
-            Some(own) => own_mesh::ring(own, DefectRing::Inner, scene)?,
-            None => made(&inner, &inner_grading)?,
-        };
-
         let facets = scene.written.mesh.roller_facets;
         let facet_mm = PI * b.roller_diameter_mm / facets as f64;
         let core = 1e-3 * grading::roller_core_mm(&scene.written.mesh, facet_mm);
@@ -72,6 +41,61 @@ impl MeshedParts {
         };
         Ok(Self { outer, inner, disc })
     }
+
+    /// Parts without grooves, with those of a scene cut into them: of rings that do not deform.
+    pub(crate) fn cut(mut self, scene: &ResolvedScene) -> Result<Self, Error> {
+        for (part, which) in [(&mut self.outer, DefectRing::Outer), (&mut self.inner, DefectRing::Inner)] {
+            if scene.grooves_of(which).next().is_some() {
+                *part = ring(scene, which, false)?;
+            }
+        }
+        Ok(self)
+    }
+
+    /// Vertices of the outer and of the inner raceway [m], counter-clockwise.
+    pub(crate) fn raceways(&self) -> [Vec<[f64; 2]>; 2] {
+        let of = |part: &Part, name: &str| -> Vec<[f64; 2]> {
+            let surface = part.surface(name).expect("a ring names its surfaces");
+            surface.nodes.iter().map(|&n| [part.x[n as usize], part.y[n as usize]]).collect()
+        };
+        // The mesh walks the outer raceway clockwise, with the solid on the left.
+        let mut outer = of(&self.outer, "inner");
+        outer.reverse();
+        [outer, of(&self.inner, "outer")]
+    }
+}
+
+/// One of the rings with its grooves, its cells `shaped` beside them or as they fall; graded ones are shaped anyhow.
+fn ring(scene: &ResolvedScene, ring: DefectRing, shaped: bool) -> Result<Part, Error> {
+    let (b, mesh) = (&scene.written.bearing, &scene.written.mesh);
+    let (own, radii, thickness_mm, fine) = match ring {
+        DefectRing::Outer => {
+            let radius = scene.outer_race_radius;
+            let radii = [radius, radius + scene.outer_ring_thickness];
+            (&scene.written.outer_ring_mesh, radii, b.outer_ring_thickness_mm, Circle::Inner)
+        }
+        DefectRing::Inner => {
+            let radius = scene.inner_race_radius;
+            let radii = [radius - scene.inner_ring_thickness, radius];
+            (&scene.written.inner_ring_mesh, radii, b.inner_ring_thickness_mm, Circle::Outer)
+        }
+    };
+    if let Some(own) = own {
+        return own_mesh::ring(own, ring, scene);
+    }
+    let annulus = Annulus {
+        inner_radius: radii[0],
+        outer_radius: radii[1],
+        facets: facets_around(scene, ring),
+        layers: grading::layers(mesh, thickness_mm),
+        start_angle: 0.0,
+        grooves: grooves_in(scene, ring),
+    };
+    Ok(match grading::ring(mesh, thickness_mm, fine) {
+        Some(grading) => annulus.graded_part(&grading)?,
+        None if shaped => annulus.part()?,
+        None => annulus.unshaped_part()?,
+    })
 }
 
 /// The part with the deviations from round of one of its surfaces.

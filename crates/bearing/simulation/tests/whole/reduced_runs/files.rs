@@ -101,3 +101,40 @@ fn invariant_a_run_over_a_profile_in_pieces_writes_the_same_bytes() {
     scene.operation.rotating_load = Some(RotatingLoadScene::default());
     assert_goes_on_with_the_same_bytes(&scene, &folder, 117);
 }
+
+/// Modes that a healthy bearing in a machine has left serve a spall on either ring, a pit, another load and speed, and
+/// the run has the bytes of one that made them for itself.
+#[test]
+fn invariant_one_reduction_serves_every_spall_load_and_speed_of_a_machine() {
+    let desk = Scratch::create("one-reduction");
+    let base = "bearing: \"6203\", model: reduced(), film: None, housing: machine(), mesh: (size_mm: 0.8, \
+        roller_facets: 64), solver: (duration_ms: 4, mass_damping_per_s: 5000, structural_damping: None)";
+    let scene = |name: &str, rest: &str| {
+        Scene::parse(&format!("(name: \"{name}\", {base}, {rest})"), "here").expect("a scene")
+    };
+    let healthy = scene("healthy", "defect: None, operation: (load_n: 300, speed_rpm: 1500)");
+    assert!(!run(&healthy, &desk, "healthy", 1).reduced.expect("reduced").from_cache);
+    for (name, rest) in [
+        (
+            "outer",
+            "defect: (ring: outer, length_mm: 2.5, depth_mm: 0.1), operation: (load_n: 120, speed_rpm: 900)",
+        ),
+        (
+            "inner",
+            "defect: (ring: inner, angle_deg: 80, length_mm: 3, depth_mm: 0.05), operation: (load_n: 900)",
+        ),
+        (
+            "pit",
+            "defect: (length_mm: 2, width_mm: 0.4, depth_mm: 0.1), operation: (load_n: 500, rotating_load: (force_n: 50))",
+        ),
+    ] {
+        let scene = scene(name, rest);
+        assert!(run(&scene, &desk, name, 1).reduced.expect("reduced").from_cache, "{name}");
+        let alone = Scratch::create(&format!("one-reduction-{name}"));
+        assert!(!run(&scene, &alone, name, 1).reduced.expect("reduced").from_cache);
+        for file in ["trace.npy", "energy.npy", "mesh.vtu"] {
+            let read = |folder: &Scratch| fs::read(folder.join(name).join(file)).expect("a run");
+            assert_eq!(read(&desk), read(&alone), "{file} of {name}");
+        }
+    }
+}
