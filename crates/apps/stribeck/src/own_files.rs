@@ -9,7 +9,7 @@ use crate::place::shown;
 use crate::shelf::Kind;
 
 /// Files of all kinds of folders, by name.
-const FILES: [&str; 33] = [
+const FILES: [&str; 35] = [
     // A run, an ensemble and their reports.
     "run.json",
     "ensemble.json",
