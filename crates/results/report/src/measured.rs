@@ -358,6 +358,7 @@ fn limits(findings: &MeasuredFindings) -> Option<Figure> {
         .filter(|f| f.limit.is_some())
         .map(|f| Mark::new(hz(f), f.name.shocks_name(), Colour::Grey, true))
         .collect();
+    figure.series.retain(|series| !series.y.is_empty());
     Some(figure)
 }
 
