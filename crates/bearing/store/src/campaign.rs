@@ -252,22 +252,22 @@ fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Numbers of bearings that ranges are multiples of, each scene read once.
+/// Numbers of bearings that ranges are multiples of, each found once.
 fn measures<'a>(
     file: &'a Text,
     base: Option<&'a Path>,
 ) -> impl Fn(Option<&str>, Times) -> Result<f64, String> + 'a {
-    let known: RefCell<BTreeMap<Option<String>, Scene>> = RefCell::default();
+    let known: RefCell<BTreeMap<(Option<String>, Times), f64>> = RefCell::default();
     move |bearing, times| {
-        let mut known = known.borrow_mut();
-        let named = bearing.map(str::to_owned);
-        if !known.contains_key(&named) {
-            let own = bearing.map(|bearing| format!("bearing={bearing}"));
-            let set: Vec<String> = file.set.iter().cloned().chain(own).collect();
-            let scene = scene_file::readable(base, &set).map_err(|why| why.to_string())?;
-            known.insert(named.clone(), scene);
+        let key = (bearing.map(str::to_owned), times);
+        if let Some(number) = known.borrow().get(&key) {
+            return Ok(*number);
         }
-        Ok(times.of(&known[&named]))
+        let own = bearing.map(|bearing| format!("bearing={bearing}"));
+        let set: Vec<String> = file.set.iter().cloned().chain(own).collect();
+        let number = times.of(&scene_file::readable(base, &set).map_err(|why| why.to_string())?);
+        known.borrow_mut().insert(key, number);
+        Ok(number)
     }
 }
 
