@@ -90,6 +90,7 @@ fn roundtrip_numbers_and_gaps() {
 }
 
 /// pyarrow and polars read a column of series, an empty one among them.
+/// Source: pyarrow and polars at the versions of .ci/run.
 #[test]
 fn peer_series_are_read_by_others() {
     let desk = Scratch::create("formats-series");

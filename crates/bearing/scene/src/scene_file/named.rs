@@ -12,8 +12,8 @@ use super::own::{self, Own};
 use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::scene::{
-    BearingScene, CageScene, ContactFormula, ContactInterpolation, ContactSurface, DefectScene, ElementKind, FramesScene,
-    GradingScene, ModelScene, PocketWalls, ReducedScene, Scene,
+    BearingScene, CageScene, ContactFormula, ContactInterpolation, ContactSurface, DefectScene, ElementKind,
+    FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene, Scene,
 };
 
 /// Length of a roller over the width of its ring, between flanges.
