@@ -119,7 +119,6 @@ fn conserves_energy_while_the_ring_creeps_in_its_seat() {
     const OF_HEAT: f64 = 5e-4;
     let folder = Scratch::create("reduced-creep");
     let mut scene = coarse(200.0);
-    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 0.5 });
     scene.solver.mass_damping_per_s = 1000.0;
     // Straight pockets let the cage wander in that time (THEORY §9.6).
     scene.cage.iter_mut().for_each(|cage| cage.pocket = PocketWalls::Corners);
@@ -138,7 +137,16 @@ fn conserves_energy_while_the_ring_creeps_in_its_seat() {
         assert!(off.abs() < OF_HEAT * heat, "{name}: {off} J of {heat} J");
         last("friction_j")
     };
-    let (slips, holds) = (friction(&scene, "slips"), friction(&held, "holds"));
+    // The cage finds another way with each step, by which friction scatters as much as creep adds to it.
+    let (mut slips, mut holds) = (0.0, 0.0);
+    for step_us in [0.4, 0.5, 0.6] {
+        let [slipping, holding] = [&scene, &held].map(|scene| Scene {
+            model: ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us }),
+            ..scene.clone()
+        });
+        slips += friction(&slipping, &format!("slips-{step_us}"));
+        holds += friction(&holding, &format!("holds-{step_us}"));
+    }
     assert!(slips > 1.05 * holds, "{slips} J where it slips, {holds} J where it holds");
 }
 
