@@ -126,7 +126,8 @@ impl Resistance {
             let [x, y] = load(simd, &block.downhill, at);
             store([pushed.times_plus(ry, x), y - pushed * rx], &mut block.downhill, at);
         }
-        Resisted { drive: drive.map(Vector::sum), power: power.sum() }
+        // One by one: the closure of a map over an array is not compiled for the vectors in it.
+        Resisted { drive: [drive[0].sum(), drive[1].sum()], power: power.sum() }
     }
 }
 

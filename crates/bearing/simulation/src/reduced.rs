@@ -13,6 +13,7 @@ use crate::run::{host::Progress, setup::Setup};
 use stribeck_reduced::modal::ModalBearing;
 use stribeck_reduced::{bearing::Bearing, state::State};
 use stribeck_scene::{
+    housing::HousingScene,
     resolved::ResolvedScene,
     scene::{ContactSurface, ModelScene, ReducedScene},
 };
@@ -275,7 +276,14 @@ fn in_steps(
         return Ok((bearing, steps, why.to_owned()));
     }
     let of_critical = if share < 1.0 { format!("{share} of the") } else { "the".to_owned() };
-    let why = format!("{of_critical} critical {:.2} µs{why}", 1e6 * critical);
+    let dampers = match &scene.written.housing {
+        HousingScene::Springs(springs) if springs.damping_n_s_m > 0.0 => {
+            " of contacts, modes and the dampers of `housing.damping_n_s_m`"
+        }
+        _ => "",
+    };
+    let (critical_us, places) = (1e6 * critical, if critical < 1e-7 { 4 } else { 2 });
+    let why = format!("{of_critical} critical {critical_us:.places$} µs{dampers}{why}");
     let steps = steps_per_sample(scene, share * critical);
     Ok((Bearing::new(modal, interval / steps as f64)?, steps, why))
 }
