@@ -6,6 +6,7 @@ use stribeck_theory::line_contact::LineContacts;
 use stribeck_theory::static_load::RigidRings;
 
 use crate::resolved::ResolvedScene;
+use crate::scene::{ContactInterpolation, ModelScene};
 
 /// Penalty stiffness [Pa/m] with which contacts give way as Hertz's do under `REFERENCE` times the force of the
 /// most loaded roller, at the largest load of the run: the mesh gives way by the rest. At most `STIFFEST` layers of elements.
@@ -25,8 +26,8 @@ pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
         _ => LineContacts::of(bearing).approach(w).0,
     };
     let meshed = scene.meshed_contacts();
-    let on_mesh =
-        |side: usize, stiffness: f64| meshed.approach_on_mesh(side, w, scene.element_size, stiffness);
+    let facet = scene.element_size * widened_by_splines(scene);
+    let on_mesh = |side: usize, stiffness: f64| meshed.approach_on_mesh(side, w, facet, stiffness);
     let layer = scene.material.youngs_modulus / scene.element_size;
     let (mut soft, mut stiff) = (1e-4_f64, STIFFEST);
     for _ in 0..60 {
@@ -38,6 +39,16 @@ pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
         }
     }
     soft * layer
+}
+
+/// How much wider contacts are by splines than by linear facets, over the length of a facet. Of the spread of a force on a
+/// facet over nodes √5 (variances of ⅓ of the cubic and ½ of the smoothed nodes, over ⅙ of a hat; THEORY §4.5), and the
+/// rest as surfaces that are smoothed follow the other's less; fitted to forces between rigid rings. The reduced
+/// model's contacts are those of linear facets.
+fn widened_by_splines(scene: &ResolvedScene) -> f64 {
+    const BY_SPLINES: f64 = 3.5;
+    let full = scene.written.model == ModelScene::Full;
+    if full && scene.written.contact.interpolation == ContactInterpolation::Spline { BY_SPLINES } else { 1.0 }
 }
 
 /// Length of cylinders [m] that let the raceways approach each other at the most loaded place as balls would; at
