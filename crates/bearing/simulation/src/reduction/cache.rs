@@ -28,10 +28,10 @@ const MAGIC: &[u8; 20] = b"stribeck reduced vM\n";
 /// their defaults. Rollers lie symmetrically about the first groove, as few as may be in it. A ring that does not
 /// deform has neither groove nor preload: its load is as large as the bearing may carry, for which contacts are wide.
 pub fn reference(scene: &Scene) -> Scene {
+    // Facets are linear in any case: so are the contacts of the reduced model.
     let ContactScene {
         method,
         surface,
-        interpolation,
         points_per_facet,
         passes,
         formula,
@@ -76,7 +76,6 @@ pub fn reference(scene: &Scene) -> Scene {
         contact: ContactScene {
             method,
             surface,
-            interpolation,
             points_per_facet,
             passes,
             formula,
