@@ -89,7 +89,7 @@ fn apart(scene: &ResolvedScene) -> Option<String> {
         ),
         HousingScene::Pedestal(_) => Some(
             "accelerations in a pedestal may be up to 13 dB lower than in the full model from 0.5 to 1.6 kHz \
-             and from 4 to 6 kHz; roller forces hold. Take `model: full` for levels"
+             and from 4 to 6 kHz; roller forces hold"
                 .to_owned(),
         ),
         HousingScene::Adapter if scene.outer_ring_thickness < LAYERS * scene.element_size => Some(format!(
