@@ -29,16 +29,8 @@ const MAGIC: &[u8; 20] = b"stribeck reduced vM\n";
 /// deform has neither groove nor preload: its load is as large as the bearing may carry, for which contacts are wide.
 pub fn reference(scene: &Scene) -> Scene {
     // Facets are linear in any case: so are the contacts of the reduced model.
-    let ContactScene {
-        method,
-        surface,
-        points_per_facet,
-        passes,
-        formula,
-        penalty_scale,
-        onset_um,
-        ..
-    } = scene.contact.clone();
+    let ContactScene { method, surface, points_per_facet, passes, formula, penalty_scale, onset_um, .. } =
+        scene.contact.clone();
     let solver = SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() };
     let is_rigid = scene.housing.is_rigid();
     let groove = scene.grooves().into_iter().next().filter(|_| !is_rigid);
