@@ -95,7 +95,7 @@ class Learning(unittest.TestCase):
 
     @unittest.skipUnless(importlib.util.find_spec("sklearn"), "no scikit-learn")
     def test_the_guide_trains_on_a_campaign(self):
-        root = Path(__file__).resolve().parents[3]
+        root = Path(__file__).resolve().parents[4]
         with tempfile.TemporaryDirectory() as folder:
             small = Path(folder) / "small.ron"
             text = (root / "fixtures/campaigns/learn6205.ron").read_text()
@@ -239,7 +239,7 @@ class Runs(unittest.TestCase):
             self.run_.export("docx")
 
     def test_a_campaign_is_its_tables(self):
-        quick = Path(__file__).parents[3] / "fixtures" / "scenes" / "quick.ron"
+        quick = Path(__file__).parents[4] / "fixtures" / "scenes" / "quick.ron"
         file = Path(self.folder.name) / "two.ron"
         file.write_text(
             f"""(name: "two", scene: {json.dumps(str(quick))}, set: ["mesh.size_mm=4.0", "mesh.roller_facets=40",

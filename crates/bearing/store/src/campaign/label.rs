@@ -11,7 +11,7 @@ pub(super) const HEALTHY: &str = "healthy";
 pub struct Label {
     /// Designation of the bearing; empty for one without.
     pub bearing: String,
-    /// Damaged parts, joined by `+`, or [`HEALTHY`].
+    /// Damaged parts, joined by `+`, or `healthy`.
     pub fault: String,
 }
 
