@@ -7,6 +7,7 @@
 
 mod ball;
 mod cases;
+#[cfg(not(target_family = "wasm"))]
 pub mod damage;
 pub mod ledger;
 mod noise;
