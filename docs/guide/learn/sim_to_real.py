@@ -101,7 +101,7 @@ def main():
     for name, other in (("CWRU", "HIT"), ("HIT", "CWRU")):
         test = windows[name]
         score(f"simulated alone → {name}", simulated, test)
-        # The background is a sound bearing of the other rig, so that nothing of this one is known.
+        # The background is a healthy bearing of the other rig, so that nothing of this one is known.
         sound = next(record for record in rigs[other] if record[3] == "sound")
         mixed = sum((simulated.with_background(sound[0], sound[1], ratio) for ratio in (1.0, 3.0)), simulated)
         score(f"simulated with background of {other} → {name}", mixed, test)

@@ -91,7 +91,7 @@ pub(crate) fn measure(runner: &Runner<'_>, rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// The scene of a sound bearing with a defect in proportion to its elements.
+/// The scene of a healthy bearing with a defect in proportion to its elements.
 fn with_defect(mut variant: Variant, sound: &Scene, defect: &str, list: &str) -> Variant {
     if defect == "roller-spall" {
         let k = sound.kinematics();

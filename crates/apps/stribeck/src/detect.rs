@@ -34,7 +34,7 @@ pub struct Options {
     /// How many lengths, evenly over their logarithm
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=100))]
     points: u32,
-    /// Records of each length, and of the sound bearing
+    /// Records of each length, and of the healthy bearing
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(5..=1000))]
     records: u32,
     /// Overrides a field of the scene, as `simulate` has it; may be repeated
@@ -62,7 +62,7 @@ fn lengths(text: &str) -> Result<(f64, f64), String> {
 
 /// One record that is made.
 struct Made {
-    /// Length of its spall [mm]; `None` of a sound bearing.
+    /// Length of its spall [mm]; `None` of a healthy bearing.
     length_mm: Option<f64>,
     scene: Scene,
 }
@@ -111,7 +111,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     say!("{}", in_words(&detection));
     say!("  {CAUTION}");
     if let Some(sound) = detection.sound {
-        say!("  of the sound bearing the same is claimed in {} of {} records", sound.count, sound.of);
+        say!("  of the healthy bearing the same is claimed in {} of {} records", sound.count, sound.of);
     }
     for one in &detection.lengths {
         say!(
@@ -152,7 +152,7 @@ fn base(options: &Options, place: &Place) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Starts of the sound bearing, then of every length.
+/// Starts of the healthy bearing, then of every length.
 fn scenes(base: &Scene, options: &Options) -> Result<Vec<Made>> {
     let (shortest, longest) = options.lengths;
     let points = if shortest < longest { options.points } else { 1 };

@@ -33,7 +33,7 @@ pub struct Options {
     /// Records of the machine at a steady speed
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
-    /// State of each record, in their order: "none" for a sound bearing, or the raceway of a spall and its length
+    /// State of each record, in their order: "none" for a healthy bearing, or the raceway of a spall and its length
     /// in mm, such as outer:0.53; outer:0.18x0.18 for a pit of that width across the raceway
     #[arg(long = "defect", required = true, value_name = "STATE", value_parser = State::parse)]
     states: Vec<State>,
@@ -132,7 +132,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     ensure!(
         options.states.iter().any(|state| state.spall.is_some()),
-        "all records are of sound bearings, which hardly excite the path: add one with a spall of known length, \
+        "all records are of healthy bearings, which hardly excite the path: add one with a spall of known length, \
          `--defect outer:0.53`"
     );
     let bearing =

@@ -72,7 +72,7 @@ enum Where {
     Inner,
     /// On a rolling element
     Roller,
-    /// Nowhere: a sound bearing
+    /// Nowhere: a healthy bearing
     None,
 }
 
@@ -348,7 +348,7 @@ fn ask<T>(question: &str, default: &dyn Display, parse: &dyn Fn(&str) -> Result<
     }
 }
 
-/// The text of the scene of a sound bearing in the catalogue, every answer the usual one.
+/// The text of the scene of a healthy bearing in the catalogue, every answer the usual one.
 ///
 /// # Errors
 /// When the catalogue has no such bearing.
@@ -463,7 +463,7 @@ fn text(name: &str, answers: &Answers) -> String {
     let (state, comment, spall) = match defect {
         Where::None => (
             "sound",
-            "A sound bearing. A spall would be: (ring: outer, length_mm: 2, depth_mm: 0.1).",
+            "A healthy bearing. A spall would be: (ring: outer, length_mm: 2, depth_mm: 0.1).",
             "None".to_owned(),
         ),
         Where::Roller => (

@@ -151,7 +151,9 @@ fn left_out(scene: &ResolvedScene) -> Vec<String> {
     let written = &scene.written;
     let mut left = Vec::new();
     if written.defect.is_some() || !written.defects.is_empty() {
-        left.push("the defects of this scene are left out: stiffness is that of a sound bearing".to_owned());
+        left.push(
+            "the defects of this scene are left out: stiffness is that of a healthy bearing".to_owned(),
+        );
     }
     if !written.housing.is_rigid() {
         left.push(

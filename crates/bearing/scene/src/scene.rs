@@ -48,7 +48,7 @@ group! {
         pub outer_ring_mesh: Option<RingMeshScene> = None, omitted();
         /// The mesh of the inner ring from a file; `None` likewise.
         pub inner_ring_mesh: Option<RingMeshScene> = None, omitted();
-        /// Spall on a raceway; `None` is a sound bearing.
+        /// Spall on a raceway; `None` is a healthy bearing.
         pub defect: Option<DefectScene> = Some(DefectScene::default());
         /// Further defects of raceways and rolling elements, and other deviations from round.
         pub defects: Vec<DeviationScene> = Vec::new(), before("[]");

@@ -68,7 +68,7 @@ pub struct Detection {
     pub seed: u64,
     /// Each length, ascending.
     pub lengths: Vec<OfLength>,
-    /// Records of the sound bearing in which the same family is claimed.
+    /// Records of the healthy bearing in which the same family is claimed.
     pub sound: Option<Share>,
     /// Whether the machine has no background, so that nothing but the sensor's noise hides a spall.
     #[serde(default)]

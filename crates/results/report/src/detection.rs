@@ -22,7 +22,7 @@ pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error
             p class="headline" { (in_words(detection)) }
             @if let Some(sound) = detection.sound {
                 p {
-                    "Of the sound bearing the verdict claims " (detection.family) " in " (sound.count) " of "
+                    "Of the healthy bearing the verdict claims " (detection.family) " in " (sound.count) " of "
                     (sound.of) " records (" (percent(sound.low)) " to " (percent(sound.high)) ", 95 %)."
                 }
             }

@@ -30,7 +30,7 @@ pub struct Joint {
 pub struct JointFamily {
     /// Whose family it is.
     pub name: Defect,
-    /// Probability that sound bearings show as much in any of the channels: the smallest of theirs times
+    /// Probability that healthy bearings show as much in any of the channels: the smallest of theirs times
     /// their number.
     pub p_value: f64,
     /// Whether this is called a defect.

@@ -3,7 +3,7 @@
 //!
 //! Makers fit different numbers into bearings of one designation, and frequencies of raceways go with the number.
 //! Where it is unknown, every one that makers may fit is judged by itself, and the verdict says with which numbers a
-//! raceway would be damaged. It claims none: on the records of results/verdicts 14 of 98 sound bearings would be.
+//! raceway would be damaged. It claims none: on the records of results/verdicts 14 of 98 healthy bearings would be.
 
 use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;

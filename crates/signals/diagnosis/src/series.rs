@@ -45,7 +45,7 @@ quantities! {
     pub struct SeriesFamily {
         /// Whose family it is.
         pub name: Defect,
-        /// Probability that sound bearings show as much in half of the last `last` records.
+        /// Probability that healthy bearings show as much in half of the last `last` records.
         pub p_value: f64,
         /// Records at the end of the series by which it is judged.
         pub last: usize,

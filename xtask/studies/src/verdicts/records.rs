@@ -26,7 +26,7 @@ pub(super) struct Labelled {
     /// Rig and bearing.
     pub(super) set: String,
     pub(super) part: Part,
-    /// The defect; `None` for a sound bearing.
+    /// The defect; `None` for a healthy bearing.
     pub(super) truth: Option<Defect>,
     /// Sound, and beside a damaged bearing at the other end of the shaft.
     pub(super) beside: bool,

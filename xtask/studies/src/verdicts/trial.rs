@@ -177,7 +177,7 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
 
 /// Score of a family where one must be named [dB]. The cage modulates whatever knocks, so a family that
 /// knocks comes first, the highest of several, and the cage is not among them; of those that do not, the one
-/// that stands farthest above unrelated combs, because elements of sound bearings pass under the load, too.
+/// that stands farthest above unrelated combs, because elements of healthy bearings pass under the load, too.
 fn score(family: &Family) -> f64 {
     /// More than any comb stands above its background [dB].
     const KNOCKS_DB: f64 = 100.0;

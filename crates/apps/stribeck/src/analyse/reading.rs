@@ -182,7 +182,7 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     if claims && of_run {
         notes.push(
             "a run has no noise but its bearing's: what elements rattle as they come under the load can make \
-             a claim of its own, in a sound bearing, too. Its report says what is in the scene; `export` \
+             a claim of its own, in a healthy bearing, too. Its report says what is in the scene; `export` \
              with `--sensor` and a `noise_density` gives it a machine's noise"
                 .to_owned(),
         );

@@ -302,7 +302,7 @@ fn issue_answers_from_a_pipe_are_read() {
     );
 }
 
-/// Sound bearings made tens of g by their facets, and were called damaged; so were rollers without a profile, which
+/// Healthy bearings made tens of g by their facets, and were called damaged; so were rollers without a profile, which
 /// enter the load with a knock.
 #[test]
 fn issue_a_sound_bearing_of_ones_own_is_judged_sound() {

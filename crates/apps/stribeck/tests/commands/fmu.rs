@@ -1,4 +1,4 @@
-//! The FMU of a sound bearing, run by FMPy.
+//! The FMU of a healthy bearing, run by FMPy.
 
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -86,6 +86,6 @@ fn refuses_what_has_no_machine() {
     let desk = desk("no-machine");
     let rigid = "--set=housing=rigid(mass_kg: 10)";
     desk.refuses(&["detect", "mine.ron", rigid], &["has no machine", "--machine FILE"]);
-    desk.refuses("machine a.csv --defect=none --bearing=6205", &["sound bearings", "--defect outer:0.53"]);
+    desk.refuses("machine a.csv --defect=none --bearing=6205", &["healthy bearings", "--defect outer:0.53"]);
     desk.refuses("machine a.csv b.csv --defect=none --bearing=6205", &["2 records and 1 states"]);
 }

@@ -83,7 +83,7 @@ fn line(samples: &[f64], interval_s: f64, hz: f64) -> f64 {
 }
 
 /// ROSS 2.3.0 loads our bearing and runs a rotor on two of them: unbalance against m e ω²/|2k − M ω²|, and
-/// the line that the turning cage drives at BPFO beside our own simulation of the sound bearing.
+/// the line that the turning cage drives at BPFO beside our own simulation of the healthy bearing.
 #[test]
 fn peer_ross_runs_a_rotor_on_our_stiffness() {
     /// The shaft of ROSS's rotor bends, by 1 and 4 % of the bearings' shift.

@@ -22,7 +22,7 @@ group! {
 }
 
 group! {
-    /// Displacements of all nodes near the middle of the defect (the top of a sound bearing) at several
+    /// Displacements of all nodes near the middle of the defect (the top of a healthy bearing) at several
     /// times.
     pub struct FramesScene {
         /// Time of the first frame [ms].

@@ -92,7 +92,7 @@ fn analytic_nodes_lie_as_deep_as_the_scene_says() {
     }
 }
 
-/// Asked of every defect: a time step within a tenth of the sound bearing's.
+/// Asked of every defect: a time step within a tenth of the healthy bearing's.
 #[test]
 fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
     let step = |scene: &Scene| {

@@ -48,7 +48,7 @@ pub struct Measured<'a> {
     pub rate_hz: f64,
     /// Speed and bearing.
     pub known: &'a Machine,
-    /// The family of its defect; `None` for a sound bearing.
+    /// The family of its defect; `None` for a healthy bearing.
     pub defect: Option<Defect>,
 }
 

@@ -80,7 +80,7 @@ pub fn fit(records: &[Known]) -> Result<MachineScene, Error> {
     let (sound, damaged): (Vec<&Octaves>, Vec<&Octaves>) = octaves.iter().partition(|o| o.is_sound);
     let Some(first) = damaged.first() else {
         return Err(Error::NoSignal(
-            "a path is fitted on the record of a bearing with a spall of known length: a sound bearing hardly \
+            "a path is fitted on the record of a bearing with a spall of known length: a healthy bearing hardly \
              excites it"
                 .to_owned(),
         ));

@@ -81,7 +81,7 @@ fn headline(of: &Subject<'_>) -> String {
     let summary = &of.findings.summary;
     let faults = of.run.scene.written.faults();
     let Some(diagnosis) = &summary.diagnosis else {
-        let state = if faults.is_empty() { "A sound bearing" } else { "A damaged bearing" };
+        let state = if faults.is_empty() { "A healthy bearing" } else { "A damaged bearing" };
         let level = summary.levels.record.as_ref().map_or(String::new(), |level| {
             format!("; {} RMS at sensor “{}”", gravities(level.rms_g), sensor(summary))
         });
@@ -104,9 +104,9 @@ fn headline(of: &Subject<'_>) -> String {
     let found = named(|family| family.claimed && family.present);
     let wrong = named(|family| family.claimed && !family.present);
     match (faults.is_empty(), found, wrong) {
-        (true, _, None) => format!("A sound bearing, and its signal shows no defect{level}."),
+        (true, _, None) => format!("A healthy bearing, and its signal shows no defect{level}."),
         (true, _, Some(wrong)) => format!(
-            "A sound bearing whose signal alone would be called damaged, by {wrong}: {}{level}.",
+            "A healthy bearing whose signal alone would be called damaged, by {wrong}: {}{level}.",
             likely_cause(summary, of.run.scene.written.housing.machine().is_some())
         ),
         (false, Some(found), _) => format!("The signal alone shows the defect: {found}{level}."),
@@ -122,7 +122,7 @@ fn has_facet_lines(summary: &Summary) -> bool {
     summary.families.iter().any(|family| family.found)
 }
 
-/// What makes the lines of a sound bearing look like those of a defect.
+/// What makes the lines of a healthy bearing look like those of a defect.
 fn likely_cause(summary: &Summary, in_machine: bool) -> &'static str {
     if has_facet_lines(summary) {
         "its surfaces are chords, whose corners knock; `contact.surface: arc` has none"

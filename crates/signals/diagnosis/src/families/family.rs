@@ -13,7 +13,7 @@ use crate::families::unrelated::UNRELATED_SPACINGS;
 use crate::quantities;
 use crate::words::numbers::chance;
 
-/// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
+/// Families of healthy bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
 pub(crate) const SOUND_DEPTHS: f64 = 11.4;
 
@@ -31,8 +31,8 @@ quantities! {
         pub harmonics: usize,
         /// Height of its first harmonic above the background of the envelope spectrum [dB].
         pub level_db: Option<f64>,
-        /// Probability that the record of a sound bearing shows a family as high and as deep: the largest of
-        /// `noise_p_value`, of `rank`, and of the part of sound bearings whose power swings as much at a family.
+        /// Probability that the record of a healthy bearing shows a family as high and as deep: the largest of
+        /// `noise_p_value`, of `rank`, and of the part of healthy bearings whose power swings as much at a family.
         pub p_value: f64,
         /// Probability that noise of the record's own colour makes a family as high; an upper bound.
         pub noise_p_value: f64,
@@ -186,14 +186,14 @@ impl Family {
         .calibrated()
     }
 
-    /// The same with its probability of a false alarm on a sound bearing, from noise, unrelated combs and depth.
+    /// The same with its probability of a false alarm on a healthy bearing, from noise, unrelated combs and depth.
     pub(crate) fn calibrated(self) -> Self {
         let by_depth = self.depth.map_or(1.0, |depth| (-SOUND_DEPTHS * depth).exp());
         Self { p_value: by_depth.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
     }
 
     /// The same where the cage modulates its knocks, as it does those of a spot on an element: of the families
-    /// of sound bearings that are as deep one in nine has more sidebands at the cage's spacing than at eight
+    /// of healthy bearings that are as deep one in nine has more sidebands at the cage's spacing than at eight
     /// unrelated ones.
     pub(crate) fn beside_the_cage(self) -> Self {
         let by_depth = self.depth.map_or(1.0, |depth| (-SOUND_DEPTHS * depth).exp());
@@ -201,7 +201,7 @@ impl Family {
         Self { p_value: by_cage.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
     }
 
-    /// The probability of a false alarm in words: that of noise and of sound bearings, beside which a family that
+    /// The probability of a false alarm in words: that of noise and of healthy bearings, beside which a family that
     /// is not claimed may still be another source's.
     pub fn false_alarm(&self) -> String {
         let of_sound = chance(self.p_value);

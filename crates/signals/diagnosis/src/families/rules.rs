@@ -353,7 +353,7 @@ pub(crate) fn decide(
 
 impl Case<'_> {
     /// What sound records of the machine say of a family, where it stands beyond them: they know this machine,
-    /// and take the place of what sound bearings of other rigs show.
+    /// and take the place of what healthy bearings of other rigs show.
     fn beyond_sound(&self, family: &Family) -> Option<BesideSound> {
         self.sound.filter(|sound| sound.name == family.name && sound.is_beyond())
     }

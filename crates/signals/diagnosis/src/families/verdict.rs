@@ -6,7 +6,7 @@
 //!    of a false alarm under noise of the record's own colour.
 //! 2. Is it more than the record's other lines? Machines are full of lines; the family must stand higher than
 //!    combs of unrelated fundamentals in the same spectrum.
-//! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
+//! 3. Is it a knock? Healthy bearings modulate noise a little as their elements pass under the load. The power
 //!    of a band must swing by 60 % of its mean.
 //!
 //! The highest that passes is claimed; `second.rs` looks for a second defect beside it. Multiples of the

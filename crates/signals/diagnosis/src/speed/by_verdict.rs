@@ -19,7 +19,7 @@ pub(crate) struct SpeedByVerdict {
     /// Its comb [Hz], and the height of that [dB].
     comb_hz: f64,
     height_db: f64,
-    /// Probability that a sound bearing shows as much at this speed.
+    /// Probability that a healthy bearing shows as much at this speed.
     p_value: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Sound bearings, and records that do not decide: made ones.
+//! Healthy bearings, and records that do not decide: made ones.
 
 use std::f64::consts::TAU;
 use stribeck_testing::assert_refused;
@@ -23,7 +23,7 @@ fn invariant_noise_is_no_defect_and_false_alarms_are_as_rare_as_stated() {
 
 #[test]
 fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
-    // What elements passing under the load do in a sound bearing: the noise swells by a fifth, not quite
+    // What elements passing under the load do in a healthy bearing: the noise swells by a fifth, not quite
     // evenly.
     let swell = |t: f64| 1.0 + 0.2 * (0..4).map(|h| (TAU * 71.7 * f64::from(h + 1) * t).cos()).sum::<f64>();
     let signal: Vec<f64> = coloured(8, 4 * SAMPLES)
