@@ -37,7 +37,7 @@ def cwru(folder):
         content = loadmat(file)
         signal = next(content[name] for name in content if name.endswith("DE_time")).ravel()
         speeds = [content[name].item() for name in content if name.endswith("RPM")]
-        # The sound record is sampled at 48 kHz.
+        # The healthy record is sampled at 48 kHz.
         rate = 48_000 if kind == "sound" else 12_000
         yield signal, rate, speeds[0] if speeds else (1750 if file.stem.endswith("2") else 1797), kind, f"CWRU {bearing}"
 

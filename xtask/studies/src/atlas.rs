@@ -55,7 +55,7 @@ const LONGEST_MS: f64 = 8000.0;
 const LEDGER: f64 = 0.01;
 /// Sidebands of six that make the right ones.
 const SIDEBANDS: usize = 3;
-/// Resolution of the repetition rate within a passage: knocks last about 1 ms, and three follow the first
+/// Resolution of the repetition rate within a passage: impacts last about 1 ms, and three follow the first
 /// one.
 const RHYTHM: f64 = 0.04;
 
@@ -147,7 +147,7 @@ fn imbalance(energy: &EnergyFinding) -> f64 {
     energy.share_of_heat.unwrap_or(energy.max_relative_error)
 }
 
-/// A family that is claimed at another place than the motion has it, or without its sidebands. Knocks of a spot
+/// A family that is claimed at another place than the motion has it, or without its sidebands. Impacts of a spot
 /// follow the spin of its element over all the record, or that under load where it slides elsewhere.
 fn misplaced(family: &DiagnosedFamily, summary: &Summary, resolution_hz: f64) -> Option<String> {
     let measured = family.measured_hz?;

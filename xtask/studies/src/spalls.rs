@@ -115,9 +115,9 @@ impl Reading {
             }
             (Some(_), None) => "a second event".to_owned(),
             (None, _) if self.is_bounded() && 2 * self.passages[1] < self.passages[0] => {
-                "one knock: most elements stay loaded".to_owned()
+                "one impact: most elements stay loaded".to_owned()
             }
-            (None, _) if self.is_bounded() => "one knock, though elements unload".to_owned(),
+            (None, _) if self.is_bounded() => "one impact, though elements unload".to_owned(),
             (None, _) => "cannot tell".to_owned(),
         }
     }
@@ -131,7 +131,7 @@ fn counts(rows: &mut Rows, prefix: &str, all: &[Reading]) {
             r.is_length() && r.is_short()
         }),
         ("a second event; longer spall", |r| r.is_length() && !r.is_short()),
-        ("one knock, which bounds the length", |r| r.is_bounded()),
+        ("one impact, which bounds the length", |r| r.is_bounded()),
         ("neither length nor bound; the defect is claimed", |r| {
             !r.is_length() && !r.is_bounded() && r.is_claimed()
         }),

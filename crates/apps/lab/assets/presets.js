@@ -9,7 +9,7 @@ export const PRESETS = [
     id: "noise", name: "Noise", roller: true,
     set: (scene) => ({ ...scene, arcs: 0 }), notch: false, view: "trace",
     words: (f, h) => `Whenever a roller leaves the spall it strikes the ring (${passing(f, h)}), and between two strikes a real bearing would be nearly quiet. `
-      + "This one never is: its circles are meshed with straight facets, and a polygon that rolls over a polygon knocks at every corner (Singh et al. 2014, Fig. 2).",
+      + "This one never is: its circles are meshed with straight facets, and a polygon that rolls over a polygon strikes at every corner (Singh et al. 2014, Fig. 2).",
   },
   {
     id: "facets", name: "Facets", roller: true,
@@ -26,7 +26,7 @@ export const PRESETS = [
   {
     id: "arcs", name: "The cure: arcs", roller: true,
     set: (scene) => ({ ...scene, arcs: 1 }), notch: false, view: "spectrum",
-    words: (f, h) => `Here rollers and raceways touch as the arcs that the same ${h.facets} facets stand for: no corners pass, nothing knocks, and the tone is gone at its source. `
+    words: (f, h) => `Here rollers and raceways touch as the arcs that the same ${h.facets} facets stand for: no corners pass, nothing strikes, and the tone is gone at its source. `
       + "What is left between the strikes of the spall is the bearing itself: rollers that take up load and give it back, and the ring that rings.",
   },
   {

@@ -83,7 +83,7 @@ fn coarse_page(module: &[u8]) -> &'static str {
 }
 
 fn page_of(scene: &Scene, module: &[u8]) -> String {
-    page::page(std::slice::from_ref(scene), module, None, "stribeck lab").expect("a sound scene").html
+    page::page(std::slice::from_ref(scene), module, None, "stribeck lab").expect("a valid scene").html
 }
 
 fn written(folder: &Scratch, name: &str, html: &str) -> PathBuf {

@@ -32,7 +32,7 @@ fn coarse(duration_ms: f64) -> Scene {
 }
 
 fn content(folder: &Scratch) -> Content {
-    page::content(&coarse(2.0), Some(folder.path())).expect("a sound scene")
+    page::content(&coarse(2.0), Some(folder.path())).expect("a valid scene")
 }
 
 fn engine(content: &Content) -> Engine {
@@ -50,7 +50,7 @@ fn mean(samples: &[f64], column: usize) -> f64 {
 fn invariant_the_first_samples_are_those_of_the_program() {
     let folder = Scratch::create("lab-run");
     let Prepared { steps_per_sample, bearing, start, .. } =
-        prepared(&coarse(2.0).resolve(), Some(folder.path())).expect("a sound scene");
+        prepared(&coarse(2.0).resolve(), Some(folder.path())).expect("a valid scene");
     let start = Saved::first(&bearing, start);
     let mut motion = BearingInMotion::new(bearing, start);
     let mut engine = engine(&content(&folder));
@@ -92,7 +92,7 @@ fn issue_a_spall_moves_in_a_bearing_with_oil() {
     let folder = Scratch::create("lab-oil");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/scenes/lab.ron");
     let scene = Scene::read(file).expect("a scene of the repository");
-    let content = page::content(&scene, Some(folder.path())).expect("a sound scene");
+    let content = page::content(&scene, Some(folder.path())).expect("a valid scene");
     for (handle, value) in [(at::SPALL_RING, 0.0), (at::SPALL_LENGTH, 10.5), (at::SPALL_ANGLE, 93.0)] {
         let mut engine = engine(&content);
         engine.ask(handle, value).expect("in range");
@@ -206,10 +206,10 @@ fn issue_a_run_that_stops_says_what_the_program_says() {
         change(&mut scene);
         let dir = RunDir::create(folder.join(format!("run {n}"))).expect("a new folder");
         let info =
-            simulate(&scene, &dir, &host(), &mut |_| ControlFlow::Continue(())).expect("a sound scene");
+            simulate(&scene, &dir, &host(), &mut |_| ControlFlow::Continue(())).expect("a valid scene");
         let said = info.stop_reason.expect("it stops");
         assert!(said.contains(words), "{said}");
-        let content = page::content(&scene, Some(folder.path())).expect("a sound scene");
+        let content = page::content(&scene, Some(folder.path())).expect("a valid scene");
         let mut engine = Engine::new(content).expect("a bearing");
         let why = (0..30_000).find_map(|_| match engine.run(1) {
             Ok(began) => began,

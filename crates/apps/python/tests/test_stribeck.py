@@ -336,7 +336,7 @@ class Signals(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "6000 to 6322"):
             stribeck.defect_orders("620S")
 
-    def test_knocks_are_found_and_called_what_they_are(self):
+    def test_impacts_are_found_and_called_what_they_are(self):
         shaft_hz, order = 25.0, 3.585
         at = np.arange(0, len(self.x) / self.fs, 1 / (order * shaft_hz))
         x = 0.2 * self.x

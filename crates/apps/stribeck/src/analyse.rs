@@ -71,7 +71,7 @@ pub struct Options {
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
     alarms: Vec<Limit>,
-    /// The first N records of a series are of the sound machine: limits of all levels follow from their
+    /// The first N records of a series are of the healthy machine: limits of all levels follow from their
     /// scatter, but for those given, and seven or more calibrate the verdict on the others
     #[arg(long, value_name = "N")]
     reference: Option<usize>,

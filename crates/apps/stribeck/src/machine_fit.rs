@@ -55,7 +55,7 @@ pub struct Options {
 /// State of a bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Raceway and length of its spall [mm]; `None` for a sound one.
+    /// Raceway and length of its spall [mm]; `None` for a healthy one.
     pub spall: Option<(DefectRing, f64)>,
     /// Its width across the raceway [mm]; `None` for one that takes the whole contact.
     pub width_mm: Option<f64>,
@@ -146,7 +146,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         .map(|(file, state)| one(file, *state, bearing, options, &set, place))
         .collect::<Result<Vec<_>>>()?;
     if given.iter().all(|g| g.state.spall.is_some()) {
-        caution!("no record of the sound machine: the fitted machine has no background");
+        caution!("no record of the healthy machine: the fitted machine has no background");
     }
     let stem = options.out.file_stem().map_or_else(|| "machine".into(), |stem| stem.to_string_lossy());
     let folder = place.runs().join(format!("{stem}-bearings"));

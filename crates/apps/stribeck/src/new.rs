@@ -367,7 +367,7 @@ pub fn sound(bearing: &str) -> Result<String> {
     Ok(text(&name(&answers), &answers))
 }
 
-/// The scene of a bearing with a spall of a raceway, or a sound one, as `new` writes it.
+/// The scene of a bearing with a spall of a raceway, or a healthy one, as `new` writes it.
 #[cfg(feature = "full")]
 pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<DefectRing>) -> Result<Scene> {
     let limits = Limits::of(bearing)?;
@@ -449,7 +449,7 @@ fn of_element(bearing: &str) -> [&'static str; 2] {
              gravity_m_s2: 0,",
         ],
         Element::Roller => [
-            "\n        // Ends relieved as those of real rollers. Straight ones enter the load with a knock.\n        \
+            "\n        // Ends relieved as those of real rollers. Straight ones enter the load with an impact.\n        \
              roller_profile: logarithmic,",
             "",
         ],

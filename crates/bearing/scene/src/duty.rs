@@ -106,7 +106,7 @@ mod tests {
     const ROUNDING: f64 = 1e-12;
 
     fn with(set: &[&str]) -> Duty {
-        Scene::default().with_overrides(set).expect("a sound scene").duty()
+        Scene::default().with_overrides(set).expect("a valid scene").duty()
     }
 
     fn close(ours: f64, theirs: f64) {

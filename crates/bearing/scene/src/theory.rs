@@ -21,8 +21,8 @@ use crate::scene::{
     RollerProfile, Scene,
 };
 
-/// Half the sampling rate over the rate of the knocks, below which an envelope has no band for them [-].
-const KNOCKS: f64 = 10.0;
+/// Half the sampling rate over the rate of the impacts, below which an envelope has no band for them [-].
+const IMPACTS: f64 = 10.0;
 
 impl From<&BearingScene> for Dimensions {
     fn from(bearing: &BearingScene) -> Self {
@@ -215,7 +215,7 @@ impl ResolvedScene {
         })
     }
 
-    /// Samples that hold no knock at the rate of the defects.
+    /// Samples that hold no impact at the rate of the defects.
     fn slow_samples(&self) -> Option<String> {
         let k = self.written.mean_kinematics();
         let hz = |on: RollingSurface| match on {
@@ -224,15 +224,15 @@ impl ResolvedScene {
             RollingSurface::Roller(_) => 2.0 * k.bsf_hz.abs(),
         };
         let faults = self.written.faults();
-        let knocks_hz = faults.into_iter().map(hz).fold(0.0, f64::max);
+        let impacts_hz = faults.into_iter().map(hz).fold(0.0, f64::max);
         let half_hz = 0.5 / self.interval;
-        (half_hz < KNOCKS * knocks_hz).then(|| {
+        (half_hz < IMPACTS * impacts_hz).then(|| {
             format!(
                 "{:.0} samples a second (`output.interval_us`) hold nothing above {half_hz:.0} Hz, and the defect is \
-                 passed {knocks_hz:.0} times a second: what its knocks ring with lies above, and the record cannot \
+                 passed {impacts_hz:.0} times a second: what its impacts ring with lies above, and the record cannot \
                  be judged. Take {:.0} or less",
                 1.0 / self.interval,
-                (0.5e6 / (KNOCKS * knocks_hz)).floor()
+                (0.5e6 / (IMPACTS * impacts_hz)).floor()
             )
         })
     }

@@ -232,7 +232,7 @@ fn conserves_the_energy_of_a_film_that_follows_a_roller() {
 /// chapter 7).
 #[test]
 fn analytic_a_groove_fades_the_film_in_and_out() {
-    /// From place to place, 5 µm apart, of the force on the sound raceway; the film is a millimetre wide.
+    /// From place to place, 5 µm apart, of the force on the healthy raceway; the film is a millimetre wide.
     const STEP: f64 = 0.02;
     /// Shares of both ends are multiplied, which is right to 0.2 %, and lengths are those of the nearest
     /// facet.

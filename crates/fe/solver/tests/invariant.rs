@@ -101,7 +101,7 @@ fn invariant_a_resumed_run_has_the_same_bits() {
 fn refuses_a_snapshot_of_another_model() {
     let (mut d, _) = ready_to_run(1);
     let before = checkpoint(&d);
-    let other = Dynamics::new(&body(&rectangle(0.01, 0.01, 4, 4)), &[true; 25], 1).expect("a sound model");
+    let other = Dynamics::new(&body(&rectangle(0.01, 0.01, 4, 4)), &[true; 25], 1).expect("a valid model");
     let error = d.restore(other.snapshot()).expect_err("other slots").to_string();
     assert!(error.contains("slots of the snapshot") && error.contains("those of the model"), "{error}");
     assert!(before == checkpoint(&d), "a refused snapshot changed something");

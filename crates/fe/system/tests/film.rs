@@ -64,7 +64,7 @@ fn analytic_a_roller_sinks_through_oil() {
     let mut plan = above_wall(0.0, 40e-6, viscosity, true);
     let mass = std::f64::consts::PI * RADIUS * RADIUS * LENGTH * 7800.0;
     plan.model.gravity = [0.0, -load / mass];
-    let mut system = plan.build(1).expect("a sound plan");
+    let mut system = plan.build(1).expect("a valid plan");
     system.set_time_step_factor(0.9).expect("elements are stiff");
     let mass: f64 = system.nodes("roller").expect("a body").iter().map(|&n| system.mass(n)).sum();
     let load = load / (std::f64::consts::PI * RADIUS * RADIUS * LENGTH * 7800.0) * mass;
@@ -96,7 +96,7 @@ fn analytic_a_rolling_roller_floats() {
         let mut plan = above_wall(-6e-3, 30e-6, viscosity, true);
         let mass = std::f64::consts::PI * RADIUS * RADIUS * LENGTH * 7800.0;
         plan.model.gravity = [0.0, -load / mass];
-        let mut system = plan.build(1).expect("a sound plan");
+        let mut system = plan.build(1).expect("a valid plan");
         system.set_time_step_factor(0.9).expect("elements are stiff");
         let roller = system.body("roller").expect("a body");
         let load = load / mass * system.motion_of(roller).mass;
@@ -119,7 +119,7 @@ fn analytic_a_rolling_roller_floats() {
 fn conserves_momentum_and_energy_through_oil() {
     /// Of sums over a thousand nodes and twelve thousand steps.
     const ROUNDING: f64 = 1e-11;
-    let mut system = above_wall(1.3e-3, 20e-6, 0.05, false).build(1).expect("a sound plan");
+    let mut system = above_wall(1.3e-3, 20e-6, 0.05, false).build(1).expect("a valid plan");
     system.set_time_step_factor(0.5).expect("elements are stiff");
     let [roller, wall] = ["roller", "wall"].map(|name| system.body(name).expect("a body"));
     system.launch(roller, [0.4, -0.5], 30.0);
@@ -167,7 +167,7 @@ fn converges_with_the_time_step() {
     /// Fitted over three halvings; the pattern of looks is not the same for all.
     const ORDERS: std::ops::RangeInclusive<f64> = 0.8..=2.3;
     let thickness_after = |factor: f64| {
-        let mut system = above_wall(0.0, 6e-6, 0.05, true).build(1).expect("a sound plan");
+        let mut system = above_wall(0.0, 6e-6, 0.05, true).build(1).expect("a valid plan");
         let step = system.set_time_step_factor(0.9).expect("elements are stiff") * factor;
         system.set_time_step(step, None).expect("a positive one");
         let roller = system.body("roller").expect("a body");
@@ -199,7 +199,7 @@ fn invariant_a_loaded_contact_is_as_dry() {
             pour(&mut plan, Oil { viscosity: 0.05, least }, 1.0);
         }
         plan.model.gravity = [0.0, -5e4];
-        let mut system = plan.build(1).expect("a sound plan");
+        let mut system = plan.build(1).expect("a valid plan");
         let strict = Preload { load: Some(30.0), ..Preload::default() };
         system.settle(&strict).expect("the wall holds it");
         system.set_time_step(5e-8, None).expect("a positive one");

@@ -30,7 +30,7 @@ fn plan() -> Plan {
 }
 
 fn falling(time_step_factor: f64) -> System {
-    let mut system = plan().build(1).expect("a sound plan");
+    let mut system = plan().build(1).expect("a valid plan");
     system.set_time_step_factor(time_step_factor).expect("elements are stiff");
     let upper = system.body("upper").expect("a body");
     system.launch(upper, [0.3, -0.5], 0.0);
@@ -73,7 +73,7 @@ fn on_a_spring(at: usize, announced: usize) -> System {
         Box::new(Spring { slot, place: 0.0, stiffness: 1e8, stored: 0.0 })
     };
     plan.force("spring", nodes, make).expect("nodes of the mesh");
-    let mut system = plan.build(1).expect("a sound plan");
+    let mut system = plan.build(1).expect("a valid plan");
     system.set_time_step_factor(0.8).expect("elements are stiff");
     system.launch(0, [0.1, 0.0], 0.0);
     system
@@ -110,7 +110,7 @@ fn conserves_energy_under_loads_that_change() {
     let mut plan = Plan::new(0.007);
     plan.add("block", &block(0.0, 0.0), steel()).expect("a new name");
     plan.load("block.right", [50.0, 0.0]).expect("a surface");
-    let mut system = plan.build(1).expect("a sound plan");
+    let mut system = plan.build(1).expect("a valid plan");
     system.set_time_step_factor(0.8).expect("elements are stiff");
     for factor in [1.0, 0.0, -2.0, 0.5] {
         system.scale_load("block.right", factor).expect("a load");
@@ -126,7 +126,7 @@ fn invariant_a_system_goes_on_from_a_snapshot_to_the_same_bits() {
     whole.run(300, 10, |_, _| ()).expect("a time step is set");
     let saved = whole.snapshot();
     whole.run(300, 10, |_, _| ()).expect("a time step is set");
-    let mut other = plan().build(2).expect("a sound plan");
+    let mut other = plan().build(2).expect("a valid plan");
     other.set_time_step(whole.time_step(), None).expect("a positive one");
     other.restore(saved.clone()).expect("the same plan");
     assert_eq!(other.steps(), saved.step());
@@ -141,18 +141,18 @@ fn invariant_a_snapshot_of_another_system_changes_nothing() {
     let before = system.snapshot();
     let mut without_contact = Plan::new(0.007);
     without_contact.add("lower", &block(0.0, 0.0), steel()).expect("a new name");
-    let other = without_contact.build(1).expect("a sound plan");
+    let other = without_contact.build(1).expect("a valid plan");
     assert!(matches!(system.restore(other.snapshot()), Err(Error::OtherSystem { what: "loads" })));
     let mut without_load = plan();
     without_load.add("third", &block(0.1, 0.0), steel()).expect("a new name");
-    let other = without_load.build(1).expect("a sound plan");
+    let other = without_load.build(1).expect("a valid plan");
     assert!(matches!(system.restore(other.snapshot()), Err(Error::Solver(_))));
     assert!(system.snapshot() == before, "a refused snapshot changed the system");
 }
 
 #[test]
 fn invariant_no_step_without_a_time_step() {
-    let mut system = plan().build(1).expect("a sound plan");
+    let mut system = plan().build(1).expect("a valid plan");
     assert!(matches!(system.step(), Err(Error::NoTimeStep)));
     assert!(matches!(system.step_with_ledger(), Err(Error::NoTimeStep)));
     assert_eq!((system.steps(), system.time()), (0, 0.0));
@@ -200,7 +200,7 @@ fn invariant_names_are_found_or_named() {
     let law = Law::penalty(1e12).expect("a law");
     says(plan.contact(Pair::new("upper.top", "roof", law)).expect_err("no roof"), &["`roof`", "`lower.top`"]);
     says(plan.load_nodes("far", vec![(900, [0.0; 2])]).expect_err("no such node"), &["`far`", "900", "90"]);
-    let mut system = plan.build(1).expect("a sound plan");
+    let mut system = plan.build(1).expect("a valid plan");
     says(system.scale_load("wind", 2.0).expect_err("no such load"), &["`wind`", "`upper.top`"]);
     says(
         system.resultant("a and b").expect_err("no such pair"),
@@ -228,7 +228,7 @@ fn invariant_a_settled_system_stays_at_rest() {
     // Contacts that change sides for ever, here at the edge of the lower block, may leave this share of the
     // load unbalanced.
     const TOLERANCE: f64 = 1e-4;
-    let mut system = plan().build(1).expect("a sound plan");
+    let mut system = plan().build(1).expect("a valid plan");
     let settled = system.settle(&Preload::default()).expect("the load reaches the ground");
     assert!(settled.unbalanced.is_none_or(|force| force < TOLERANCE * 1e3), "{settled:?}");
     let mass: f64 = system.nodes("upper").expect("a body").iter().map(|&n| system.mass(n)).sum();
@@ -248,7 +248,7 @@ fn invariant_a_settled_system_stays_at_rest() {
 /// Present contact forces cancel over both bodies and carry the preload, and a query changes nothing.
 #[test]
 fn conserves_momentum_of_present_contact_forces() {
-    let mut system = plan().build(1).expect("a sound plan");
+    let mut system = plan().build(1).expect("a valid plan");
     system.settle(&Preload::default()).expect("the load reaches the ground");
     let (before, forces) = (system.snapshot(), system.contact_forces());
     assert!(system.snapshot() == before, "asking for forces changed the system");
@@ -279,7 +279,7 @@ fn stirred(factor: f64) -> [f64; 2] {
     plan.contact(Pair::new("upper.bottom", "lower.top", Law::penalty(5e13).expect("a law")))
         .expect("two surfaces");
     plan.load("upper.top", [0.0, -1e3]).expect("a surface");
-    let mut system = plan.build(1).expect("a sound plan");
+    let mut system = plan.build(1).expect("a valid plan");
     system.settle(&Preload::default()).expect("the load reaches the ground");
     system.set_time_step(factor * system.present_critical_time_step(), None).expect("blocks are stiff");
     let upper = system.body("upper").expect("a body");

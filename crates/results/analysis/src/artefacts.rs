@@ -185,7 +185,7 @@ fn defect(
     Ok(lines.iter().map(entry).collect())
 }
 
-/// All multiples of the defect's frequency, where a spectrum shows them: knocks make a comb over the whole
+/// All multiples of the defect's frequency, where a spectrum shows them: impacts make a comb over the whole
 /// spectrum.
 struct ShockComb {
     name: &'static str,

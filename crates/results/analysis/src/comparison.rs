@@ -139,7 +139,7 @@ impl Comparison {
     }
 
     /// Band whose envelope is compared [Hz]: that in which the first side with a claim has its highest
-    /// family, else the band of the first side that knocks most.
+    /// family, else the band of the first side that has the strongest impacts.
     pub fn band_hz(&self) -> Option<(f64, f64)> {
         let claimed = self.sides.iter().flat_map(|side| side.members.first()).find_map(|member| {
             let level = |f: &&stribeck_diagnosis::Family| f.level_db.unwrap_or(f64::NEG_INFINITY);

@@ -65,7 +65,7 @@ quantities! {
         pub measured_hz: Option<f64>,
         /// Height of its first harmonic above the background [dB].
         pub level_db: Option<f64>,
-        /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+        /// Whether its impacts keep their phase while an element passes under the load only, so that it has no
         /// lines.
         #[serde(default)]
         pub in_passages: bool,

@@ -8,7 +8,7 @@ use crate::tones::{self, PredictedLine, Tone};
 use stribeck_diagnosis::quantities;
 
 /// Lower end of the band whose envelope is taken [Hz]: above the facet tone, so that its beats are not taken
-/// for knocks.
+/// for impacts.
 const BAND_FROM_HZ: f64 = 6_000.0;
 /// Upper end as a part of half the sample rate.
 const BAND_TO: f64 = 0.9;

@@ -33,7 +33,7 @@ quantities! {
         pub max_roller_n: Option<f64> => "largest force on a roller" at 6,
         /// Largest single sample of the same force [N].
         pub max_roller_peak_n: Option<f64>,
-        /// Largest roller force between rigid rings at rest, sound raceway [N].
+        /// Largest roller force between rigid rings at rest, healthy raceway [N].
         pub static_max_roller_n: Option<f64>,
         /// The same with the rollers over the defect left out: their neighbours carry more [N].
         pub static_max_roller_defect_n: Option<f64>,

@@ -42,7 +42,7 @@ pub(super) fn picture(course: &Course, unit: &str) -> Picture {
     let mut picture = heat(course, RANGE_DB, ("spectrogram", "Spectrogram"), &time, &frequency);
     picture.caption =
         "Horizontal bands are resonances and steady lines, slanted ones follow the speed, vertical ones are \
-         knocks and events."
+         impacts and events."
             .into();
     picture.note = format!(
         "Density in dB re 1 ({unit})²/Hz, lines {:.1} Hz apart, Hann window; each column is the mean over \
@@ -76,7 +76,7 @@ pub(super) fn order_map(course: &Course, band_hz: (f64, f64), orders: &[(String,
     let end = course.step_s * columns as f64;
     let turns = Span { label: "Turns of the shaft", end, unit: "", prefixed: false };
     let top = course.grid_hz * (lines - 1) as f64;
-    let axis = Span { label: "Order (knocks a turn)", end: top, unit: "", prefixed: false };
+    let axis = Span { label: "Order (impacts a turn)", end: top, unit: "", prefixed: false };
     let mut picture = heat(&part, ORDER_RANGE_DB, ("order-map", "Order map of the envelope"), &turns, &axis);
     // Labels side by side: orders of raceways and elements lie close together.
     for (n, (name, order)) in orders.iter().filter(|(_, order)| *order < top).enumerate() {
@@ -91,7 +91,7 @@ pub(super) fn order_map(course: &Course, band_hz: (f64, f64), orders: &[(String,
         picture.sheet.text([right, y - 4.0], 12.0, Anchor::End, INK, &words);
     }
     picture.caption =
-        "A source that knocks n times a turn is a horizontal line at order n, whatever the speed; one with a \
+        "A source that strikes n times a turn is a horizontal line at order n, whatever the speed; one with a \
          fixed frequency slants."
             .into();
     picture.note = format!(

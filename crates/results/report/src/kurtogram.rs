@@ -59,10 +59,10 @@ pub(super) fn picture(bands: &[BandEnvelope], chosen: &[Chosen]) -> Option<Pictu
         sheet.text([x(hz), foot + 19.0], 12.0, Anchor::Middle, INK, &Scale::of(half_hz).text(hz, step, "Hz"));
     }
     sheet.text([AT[0] + 0.5 * SIZE[0], foot + 40.0], 13.0, Anchor::Middle, INK, "Frequency");
-    let mut picture = Picture::new("kurtogram", "Kurtogram: which bands knock", sheet);
+    let mut picture = Picture::new("kurtogram", "Kurtogram: bands with impacts", sheet);
     let whys: Vec<&str> = chosen.iter().map(|c| c.why.as_str()).collect();
     picture.caption = format!(
-        "The envelope knocks most from {:.0} to {:.0} Hz, with a kurtosis of {}.{}",
+        "The envelope has the strongest impacts from {:.0} to {:.0} Hz, with a kurtosis of {}.{}",
         most.low_hz,
         most.high_hz,
         number(most.kurtosis),
@@ -70,7 +70,7 @@ pub(super) fn picture(bands: &[BandEnvelope], chosen: &[Chosen]) -> Option<Pictu
     );
     picture.note = "Kurtosis of the complex envelope of each band less that of noise, which has 0. The \
                     verdict takes the band in which a family's comb stands highest, which need not be the \
-                    one that knocks most."
+                    one that has the strongest impacts."
         .into();
     Some(picture)
 }

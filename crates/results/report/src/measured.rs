@@ -192,7 +192,7 @@ fn pictures(analysis: &Analysis, unit: &str) -> Vec<Picture> {
     pictures
 }
 
-/// Knocks of each family in a turn of the shaft.
+/// Impacts of each family in a turn of the shaft.
 fn orders_of(families: &[Family], shaft_hz: f64) -> Vec<(String, f64)> {
     let order = |f: &Family| {
         let hz = f.measured_hz.unwrap_or(f.expected_hz);
@@ -301,7 +301,7 @@ fn shown(families: &[Family]) -> Vec<&Family> {
 }
 
 /// Of each family that is shown its envelope spectrum, the combs that it is compared with and the mean over
-/// its period; without a family the envelope of the band that knocks most.
+/// its period; without a family the envelope of the band that has the strongest impacts.
 pub(crate) fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figure>, Error> {
     let findings = &analysis.findings;
     let mut figures = Vec::new();
@@ -440,7 +440,7 @@ fn combs(family: &Family) -> Option<Figure> {
     Some(figure)
 }
 
-/// The mean power over one period of the knocks, and over an unrelated one.
+/// The mean power over one period of the impacts, and over an unrelated one.
 fn period(family: &Family, (of_family, control): &(SynchronousMean, SynchronousMean)) -> Figure {
     let curve = |name: &str, colour: Colour, mean: &SynchronousMean| {
         let step = 1.0 / mean.power.len() as f64;
@@ -465,7 +465,7 @@ fn period(family: &Family, (of_family, control): &(SynchronousMean, SynchronousM
     ))
     .note(
         "From the beginning of the record, in the band in which the family stands highest. Each curve is \
-         turned so that its highest value lies at a quarter. Knocks that slip lose their phase from period to period, \
+         turned so that its highest value lies at a quarter. Impacts that slip lose their phase from period to period, \
          and with it this peak, though their lines stand.",
     );
     figure.levels = vec![Level { y: 1.0, label: "mean".into(), colour: Colour::Grey }];
@@ -485,7 +485,7 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
     )
     .caption(
         "How surely each part of the spectrum comes and goes at a rate, averaged over all parts. It shows \
-         what knocks where the signal is weak; the verdict does not rest on it.",
+         what strikes where the signal is weak; the verdict does not rest on it.",
     )
     .note(format!(
         "From the first {:.2} s: cyclic lines {:.3} Hz apart, carriers {:.1} Hz apart. Dashed where a family \

@@ -72,7 +72,7 @@ fn page(findings: &SeriesFindings, limits: &[Limit]) -> Result<Markup, Error> {
                 (answers(&Brief::of_series(series, last)))
             }
             @if series.sound > 0 {
-                p class="hint" { "The first " (series.sound) " records are of the sound machine." }
+                p class="hint" { "The first " (series.sound) " records are of the healthy machine." }
             }
             @if !series.families.is_empty() {
                 h2 #families { "Defect families" }

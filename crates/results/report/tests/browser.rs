@@ -122,13 +122,13 @@ fn behaves_a_browser_draws_every_figure_of_an_ensemble() {
     draws_all(&browser, &folder);
 }
 
-/// Knocks of an outer raceway of a 6205 at 1200 rpm, that ring at 3 kHz.
-fn knocks(height: f64) -> Channel {
-    knocks_and_shaft(height, 0.0)
+/// Impacts of an outer raceway of a 6205 at 1200 rpm, that ring at 3 kHz.
+fn impacts(height: f64) -> Channel {
+    impacts_and_shaft(height, 0.0)
 }
 
 /// The same with a line of the shaft.
-fn knocks_and_shaft(height: f64, shaft: f64) -> Channel {
+fn impacts_and_shaft(height: f64, shaft: f64) -> Channel {
     let mut noise = Noise::new(7);
     let samples = (0..65_536).map(|n| {
         let time = f64::from(n) / 12_800.0;
@@ -140,7 +140,7 @@ fn knocks_and_shaft(height: f64, shaft: f64) -> Channel {
     Channel::held("housing", samples.collect()).in_unit(Some("g".to_owned()))
 }
 
-/// A measured record over one of the sound machine: kurtogram, spectrogram, waterfall, both curves.
+/// A measured record over one of the healthy machine: kurtogram, spectrogram, waterfall, both curves.
 #[test]
 fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
     let folder = Scratch::new("browser-measured");
@@ -149,7 +149,7 @@ fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
         bearing: Some(CatalogueBearing::parse("6205").expect("known")),
         ..Machine::default()
     };
-    let of = |height: f64| Analysis::of(&knocks(height), 12_800.0, &machine).expect("a signal");
+    let of = |height: f64| Analysis::of(&impacts(height), 12_800.0, &machine).expect("a signal");
     let baseline = report::Baseline { name: "sound.mat".to_owned(), analysis: of(0.0) };
     report::write_measured(folder.path(), "damaged.mat", &of(2.0), Some(&baseline)).expect("a page");
     let page = std::fs::read_to_string(folder.join("report.html")).expect("a page");
@@ -182,9 +182,9 @@ fn behaves_the_verdict_is_one_sheet_of_paper() {
     };
     let of =
         |samples: &Channel, machine: &Machine| Analysis::of(samples, 12_800.0, machine).expect("a signal");
-    let damaged = of(&knocks(2.0), &machine);
-    let (open, healthy) = (of(&knocks(0.0), &machine), of(&knocks_and_shaft(0.0, 2.0), &machine));
-    let unknown = of(&knocks(2.0), &Machine::default());
+    let damaged = of(&impacts(2.0), &machine);
+    let (open, healthy) = (of(&impacts(0.0), &machine), of(&impacts_and_shaft(0.0, 2.0), &machine));
+    let unknown = of(&impacts(2.0), &Machine::default());
     let scratch = Scratch::create("sheet");
     let mut folders = Vec::new();
     for (analysis, headline) in [

@@ -137,7 +137,7 @@ impl Analysis {
         })
     }
 
-    /// The band of the family that stands highest; without one that knocks most [Hz].
+    /// The band of the family that stands highest; without one that has the strongest impacts [Hz].
     pub fn leading_band_hz(&self) -> Option<(f64, f64)> {
         let there = self.findings.families.iter().filter(|f| f.is_there() && f.band_hz.is_some());
         let leading = there.min_by(|a, b| a.p_value.total_cmp(&b.p_value)).and_then(|f| f.band_hz);

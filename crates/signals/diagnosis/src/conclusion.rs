@@ -96,8 +96,8 @@ impl Doubt {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Open<'a> {
     Doubt(Doubt),
-    /// Another part is claimed, or something knocks.
-    Knocks,
+    /// Another part is claimed, or something strikes.
+    Impacts,
     /// A raceway was not looked for.
     NotLookedFor(&'a Family),
     /// A raceway stands out, and less than would be claimed.
@@ -129,11 +129,11 @@ pub(crate) fn open<'a>(
         f.is_there() && f.depth.is_some_and(|depth| depth >= NEAR.0) && above_db >= NEAR.1
     };
     let limit = limit_of_raceways(families);
-    let knocks = unexplained.is_some() || families.iter().any(|f| f.claimed || f.knocks());
+    let strikes = unexplained.is_some() || families.iter().any(|f| f.claimed || f.has_impacts());
     let nearest = raceways(families).filter(near).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     let all = [
         doubt.map(Open::Doubt),
-        knocks.then_some(Open::Knocks),
+        strikes.then_some(Open::Impacts),
         raceways(families).find(|f| f.band_hz.is_none()).map(Open::NotLookedFor),
         nearest.map(Open::Near),
         limit.is_none_or(|limit| limit.over_rms > OF_A_SPALL).then_some(Open::Weak(limit)),
@@ -148,7 +148,7 @@ impl Open<'_> {
             Self::Doubt(Doubt::Samples) => "damaged samples",
             Self::Doubt(Doubt::SoughtSpeed) => "speed that was sought",
             Self::Doubt(Doubt::Short) => "fewer than 20 turns",
-            Self::Knocks => "other impacts",
+            Self::Impacts => "other impacts",
             Self::NotLookedFor(_) => "raceway not looked for",
             Self::Near(_) => "near to a claim",
             Self::Weak(_) => "limit above that of spalls",

@@ -46,14 +46,14 @@ quantities! {
         pub zone: Option<zone::Zoned>,
         /// The defect families; none without speed and bearing.
         pub families: Vec<Family>,
-        /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
+        /// A comb that strikes, is no family's of this bearing, and stands higher than all that are.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub unexplained: Option<Unexplained>,
         /// How far the rolling family that stands farthest above unrelated combs does so [dB]: the scores of sound
         /// records of a machine calibrate that of a further one.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub score_db: Option<f64>,
-        /// Records of the sound machine with as high a score.
+        /// Records of the healthy machine with as high a score.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub sound_as_high: Option<SoundAsHigh>,
         /// The conclusion on each part of the bearing.
@@ -69,10 +69,10 @@ quantities! {
         /// Time between these events [ms].
         #[serde(skip_serializing_if = "Option::is_none")]
         pub event_spacing_ms: Option<f64>,
-        /// Where a passage has a single event: the spall is shorter than this, if entry and exit both knock [mm].
+        /// Where a passage has a single event: the spall is shorter than this, if entry and exit both impact [mm].
         #[serde(skip_serializing_if = "Option::is_none")]
         pub spall_below_mm: Option<f64>,
-        /// What sensor, amplifier, converter and recorder did to the samples; none for a sound record. The notes
+        /// What sensor, amplifier, converter and recorder did to the samples; none for a valid record. The notes
         /// have it in words.
         pub quality: Vec<Quality>,
         /// Limits of the conclusion.
@@ -121,7 +121,7 @@ impl MeasuredFindings {
 }
 
 quantities! {
-    /// How many records of the sound machine have as high a score as a record.
+    /// How many records of the healthy machine have as high a score as a record.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
     pub struct SoundAsHigh {
         /// Those that have.

@@ -105,7 +105,7 @@ impl Judged {
             format!("a defect of {} would with {elements} ({name} at {hz:.2} Hz)", name.part())
         };
         found.verdict = format!(
-            "The record knocks as {}, of {least} to {most} rolling elements that makers may fit into `{name}`: count \
+            "The record impacts as {}, of {least} to {most} rolling elements that makers may fit into `{name}`: count \
              them, and give `--bearing \"{name}, elements=…\"`.",
             claims.iter().map(would).collect::<Vec<_>>().join(" and ")
         );
@@ -218,7 +218,7 @@ fn speed_in_hertz(record: &Record, machine: &Machine) -> Option<String> {
 }
 
 /// The families after the last rules: a second defect beside the first, claims that stand in one half of the
-/// record alone, and the element that knocks once a turn of the cage.
+/// record alone, and the element that strikes once a turn of the cage.
 fn concluded(
     decided: Vec<Family>,
     first: Option<&FirstDefect>,

@@ -12,7 +12,7 @@
 //! use stribeck_dsp::channel::Channel;
 //! use stribeck_theory::catalogue::CatalogueBearing;
 //!
-//! // Knocks at 3.585 times 20 Hz that ring at 3 kHz, in noise.
+//! // Impacts at 3.585 times 20 Hz that ring at 3 kHz, in noise.
 //! let rate_hz = 12_800.0;
 //! let mut seed = 1_u64;
 //! let samples: Vec<f64> = (0..65_536)

@@ -30,7 +30,7 @@ pub struct Machine {
     /// How far an element is pressed together over a spall, by simulation; `None` to compute it for rigid
     /// rings from load, clearance and compliance.
     pub pressed: Option<Pressed>,
-    /// Scores of records of this machine when it was sound ([`MeasuredFindings::score_db`]) [dB].
+    /// Scores of records of this machine when it was healthy ([`MeasuredFindings::score_db`]) [dB].
     ///
     /// [`MeasuredFindings::score_db`]: crate::MeasuredFindings::score_db
     pub sound_db: Vec<f64>,

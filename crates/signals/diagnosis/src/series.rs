@@ -26,7 +26,7 @@ quantities! {
         pub records: usize,
         /// Those that could be analysed.
         pub analysed: usize,
-        /// The first ones, which are of the sound machine.
+        /// The first ones, which are of the healthy machine.
         pub sound: usize,
         /// The defect families; none without speed and bearing.
         pub families: Vec<SeriesFamily>,
@@ -51,7 +51,7 @@ quantities! {
         pub last: usize,
         /// Those of them that claim it.
         pub last_claiming: usize,
-        /// All records behind those of the sound machine that claim it.
+        /// All records behind those of the healthy machine that claim it.
         pub claiming: usize,
         /// Short records at the end of the series whose mean spectra claim it; `null` where they do not.
         pub pooled: Option<usize>,
@@ -353,7 +353,7 @@ fn growth(records: &[Option<&MeasuredFindings>]) -> Option<Growth> {
 }
 
 /// The conclusion on all records: a defect where it is claimed, none where half of the records that are not of the
-/// healthy machine show that there is none, and no other knocks at the end.
+/// healthy machine show that there is none, and no other impacts at the end.
 fn concluded(families: &[SeriesFamily], records: &[Option<&MeasuredFindings>]) -> Conclusion {
     let conclusions: Vec<&Conclusion> = records.iter().flatten().map(|record| &record.conclusion).collect();
     let claimed = |names: &[Defect]| families.iter().any(|f| f.claimed && names.contains(&f.name));
@@ -440,7 +440,7 @@ fn words(family: &SeriesFamily, sound: usize) -> String {
     };
     let by = match (claiming, height_db.len() - sound) {
         (claiming, of) if *claiming == of => {
-            format!("all {of} records that are not of the sound machine claim it")
+            format!("all {of} records that are not of the healthy machine claim it")
         }
         (0, _) if pooled.is_some() => {
             format!(
@@ -483,7 +483,7 @@ mod tests {
         }
         let found = onset(&heights(&values), 0).unwrap();
         assert_eq!((found.record, found.low, found.high), (7, 7, 7));
-        // One among the sound records is excluded, and a slow one is less certain.
+        // One among the healthy records is excluded, and a slow one is less certain.
         assert!(onset(&heights(&values), 8).is_none_or(|found| found.low > 8));
         let slow = |at: usize| 5.0 + scatter[at % 12] + 0.4 * at.saturating_sub(12) as f64;
         let slow = onset(&heights(&(0..24).map(slow).collect::<Vec<f64>>()), 0).unwrap();
@@ -515,7 +515,7 @@ mod tests {
         let end = End::of(&families, ALPHA);
         assert_eq!((end.last, end.claiming), (1, 1));
         assert!((end.p_value - 4e-6).abs() < 1e-12);
-        // A false alarm in the middle of a sound series is none at its end.
+        // A false alarm in the middle of a valid series is none at its end.
         families.swap(3, 7);
         assert!(End::of(&families, ALPHA).p_value > 0.5);
         // Five of the last eight claim it, of which the upper median is 1e-4: 2 · 1e-4 · 4 is below 1e-3.

@@ -18,7 +18,7 @@ fn gaussian(noise: &mut Noise) -> f64 {
     (0..12).map(|_| noise.share()).sum::<f64>() - 6.0
 }
 
-/// Noise, and knocks that ring at 3 kHz: a sound record of a damaged bearing.
+/// Noise, and impacts that ring at 3 kHz: a valid record of a damaged bearing.
 fn sound() -> Vec<f64> {
     let mut noise = Noise::new(5);
     let ring = |s: f64| 3.0 * (-s / 1e-3).exp() * (TAU * 3000.0 * s).sin();
@@ -140,16 +140,19 @@ fn issue_converters_amplifiers_and_means_are_named() {
 fn behaves_sound_records_have_no_findings() {
     let x = sound();
     let of = |make: &dyn Fn(f64) -> f64| (0..COUNT).map(|n| make(n as f64 / RATE_HZ)).collect::<Vec<f64>>();
-    let knock = |s: f64| 3.0 * (-s / 1e-3).exp() * (TAU * 3000.0 * s).sin();
+    let impact = |s: f64| 3.0 * (-s / 1e-3).exp() * (TAU * 3000.0 * s).sin();
     for (name, samples) in [
-        ("noise and knocks", x.clone()),
+        ("noise and impacts", x.clone()),
         ("12 bits", x.iter().map(|x| (x / 0.01).round() * 0.01).collect()),
         ("48 levels", x.iter().map(|x| (x / 0.15).round() * 0.15).collect()),
         ("sine", of(&|s| (TAU * 100.3 * s).sin())),
         ("sine in step with the samples", of(&|s| (TAU * 100.0 * s).sin())),
         ("beating", of(&|s| (1.0 + 0.5 * (TAU * 3.0 * s).sin()) * (TAU * 1000.7 * s).sin())),
-        ("knocks without noise", of(&|s| knock(s % (1.0 / 71.7)))),
-        ("knocks in step with the samples", (0..COUNT).map(|n| knock((n % 180) as f64 / RATE_HZ)).collect()),
+        ("impacts without noise", of(&|s| impact(s % (1.0 / 71.7)))),
+        (
+            "impacts in step with the samples",
+            (0..COUNT).map(|n| impact((n % 180) as f64 / RATE_HZ)).collect(),
+        ),
     ] {
         assert_eq!(found(&samples), [], "{name}");
     }

@@ -121,7 +121,7 @@ impl Response {
     }
 
     /// The same with ringing behind it that dies away to 1/e in `decay_s` [s] and leaves every magnitude as it is: what
-    /// the many modes of a structure do to a knock. Four all-passes of delays that are in no simple ratio (M. R.
+    /// the many modes of a structure do to an impact. Four all-passes of delays that are in no simple ratio (M. R.
     /// Schroeder, Natural sounding artificial reverberation, J. Audio Eng. Soc. 10 (1962) 219–223).
     pub fn ringing(self, decay_s: f64) -> Result<Self> {
         check_positive("decay_s", decay_s)?;

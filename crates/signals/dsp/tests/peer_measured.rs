@@ -1,5 +1,5 @@
 //! Against scipy 1.17.1 and PySDKit 0.5.0: the vectors of `fixtures/reference/measured_dsp.json`, which the
-//! script beside it writes. The input is knocks every 61.7 samples that ring, in the noise of a linear
+//! script beside it writes. The input is impacts every 61.7 samples that ring, in the noise of a linear
 //! congruential generator.
 
 use std::f64::consts::TAU;

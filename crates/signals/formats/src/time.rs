@@ -420,7 +420,7 @@ impl Course {
             };
             let more = if more > 0 { format!(", and so at {more} more places") } else { String::new() };
             notes.push(format!(
-                "the times of `{name}` have a gap after {}: {what}{more}. Knocks before and after it do not \
+                "the times of `{name}` have a gap after {}: {what}{more}. Impacts before and after it do not \
                  line up: cut the file there and take the longer part",
                 at(gap.after)
             ));

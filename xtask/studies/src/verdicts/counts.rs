@@ -69,7 +69,7 @@ pub(super) const CLASSES: [&str; 5] = [
 ];
 const PARTS: [(Part, &str); 2] = [(Part::Chosen, "chosen part"), (Part::Quoted, "quoted part")];
 
-/// The least score that no sound record of the chosen part has [dB].
+/// The least score that no healthy record of the chosen part has [dB].
 fn threshold<'a>(all: impl Iterator<Item = Pair<'a>>, of: fn(&Judged) -> Option<&Scores>) -> f64 {
     let sound = all.filter(|(record, _)| record.part == Part::Chosen && record.truth.is_none());
     let highest = sound.filter_map(|(_, judged)| Some(baseline::choice(of(judged)?).1));
@@ -117,7 +117,7 @@ pub(super) fn verdicts(rows: &mut Rows, records: &[Labelled], judged: &[Judged])
     }
 }
 
-/// The records of rigs of which enough sound ones are there, each with the scores of all others that are sound
+/// The records of rigs of which enough healthy ones are there, each with the scores of all others that are sound
 /// [dB].
 pub(super) fn sound_of_the_rig<'a>(
     records: &'a [Labelled],
@@ -136,7 +136,7 @@ pub(super) fn sound_of_the_rig<'a>(
     with_others.filter(|(_, sound_db)| sound_db.len() >= LEAST_SOUND).collect()
 }
 
-/// Right, wrong and undecided beside sound records of the same rig.
+/// Right, wrong and undecided beside healthy records of the same rig.
 pub(super) fn beside_sound(rows: &mut Rows, records: &[(&Labelled, Vec<f64>)], outcomes: &[Option<Outcome>]) {
     for (set, what) in SETS.into_iter().flat_map(|set| CLASSES.map(|class| (set, class))) {
         let (mut counts, mut fewest) = (Counts::default(), usize::MAX);
@@ -203,7 +203,7 @@ pub(super) fn choices(rows: &mut Rows, records: &[Labelled], judged: &[Judged]) 
     }
 }
 
-/// False-alarm probabilities of sound records, observed against claimed.
+/// False-alarm probabilities of healthy records, observed against claimed.
 pub(super) fn false_alarms(rows: &mut Rows, records: &[Labelled], judged: &[Judged]) -> Figure {
     let sound = pairs(records, judged).filter(|(record, _)| record.truth.is_none());
     let mut values: Vec<f64> =
@@ -228,7 +228,7 @@ pub(super) fn false_alarms(rows: &mut Rows, records: &[Labelled], judged: &[Judg
     let axis = |label: &str| Axis::decades(label, "");
     let (x, y) = (axis("claimed, p_value"), axis("observed: share of families"));
     let mut figure = Figure::new("p", "Observed against claimed", x, y)
-        .with(Series::listed("families of sound records", Colour::Blue, claimed, observed).as_points())
+        .with(Series::listed("families of healthy records", Colour::Blue, claimed, observed).as_points())
         .with(Series::listed("calibrated", Colour::Grey, vec![-3.0, 0.0], vec![-3.0, 0.0]));
     figure.levels.push(Level { y: -3.0, label: "1 in 1000".into(), colour: Colour::Orange });
     figure

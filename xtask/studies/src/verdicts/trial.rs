@@ -123,7 +123,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
     judge_beside(record, change, &[])
 }
 
-/// The same with the scores of records of the sound machine [dB].
+/// The same with the scores of records of the healthy machine [dB].
 pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) -> Option<Outcome> {
     let (mut rate_hz, mut speed_rpm, mut bearing) =
         (record.rate_hz, record.speed_rpm, record.bearing.clone());
@@ -175,14 +175,14 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
     })
 }
 
-/// Score of a family where one must be named [dB]. The cage modulates whatever knocks, so a family that
-/// knocks comes first, the highest of several, and the cage is not among them; of those that do not, the one
+/// Score of a family where one must be named [dB]. The cage modulates whatever strikes, so a family that
+/// impacts comes first, the highest of several, and the cage is not among them; of those that do not, the one
 /// that stands farthest above unrelated combs, because elements of healthy bearings pass under the load, too.
 fn score(family: &Family) -> f64 {
     /// More than any comb stands above its background [dB].
-    const KNOCKS_DB: f64 = 100.0;
-    if family.knocks() && family.name != Defect::Ftf {
-        KNOCKS_DB + family.score_db()
+    const IMPACTS_DB: f64 = 100.0;
+    if family.has_impacts() && family.name != Defect::Ftf {
+        IMPACTS_DB + family.score_db()
     } else {
         family.above_unrelated_db().unwrap_or(f64::NEG_INFINITY)
     }

@@ -115,7 +115,7 @@ class Windows:
         return self._features
 
     def with_background(self, background: Any, rate: float, ratio: float, seed: int = 0) -> "Windows":
-        """The windows with a measured record of a sound machine added, from a random place each, at ``ratio`` times the root mean
+        """The windows with a measured record of a healthy machine added, from a random place each, at ``ratio`` times the root mean
         square of the window; the record is resampled to their rate."""
         if not ratio >= 0:
             raise ValueError(f"ratio is {ratio}: the root mean square of the background over that of the window, 0 or more")

@@ -1,4 +1,4 @@
-//! Records of the sound machine: the first is drawn behind another one, and all calibrate its verdict.
+//! Records of the healthy machine: the first is drawn behind another one, and all calibrate its verdict.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use stribeck_report::Baseline;
 use super::{Options, examine};
 use crate::place::{Place, shown};
 
-/// Reads and analyses the records of the sound machine.
+/// Reads and analyses the records of the healthy machine.
 pub(super) fn read(options: &Options, place: &Place) -> Result<Vec<Baseline>> {
     let mut reading = options.reading.clone();
     if options.baseline_rpm.is_some() {

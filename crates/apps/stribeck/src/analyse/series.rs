@@ -114,7 +114,7 @@ pub(super) fn run(files: &[PathBuf], asked: &Asked<'_>, mut reading: Reading) ->
     Ok(ExitCode::SUCCESS)
 }
 
-/// Each record by itself; those of the sound machine calibrate the verdict on the others.
+/// Each record by itself; those of the healthy machine calibrate the verdict on the others.
 fn analysed(
     files: &[PathBuf],
     out: &Path,

@@ -82,7 +82,7 @@ pub(crate) fn complete(scene: &Scene, folder: &Path) -> RunInfo {
     };
     let dir = RunDir::create(folder).expect("the folder is new");
     let info =
-        simulate(scene, &dir, &host, &mut |_| std::ops::ControlFlow::Continue(())).expect("a sound scene");
+        simulate(scene, &dir, &host, &mut |_| std::ops::ControlFlow::Continue(())).expect("a valid scene");
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     info
 }

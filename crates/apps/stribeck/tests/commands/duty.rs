@@ -22,7 +22,7 @@ use stribeck_theory::kinematics::Kinematics;
 
 fn scene(file: &str, set: &[&str]) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../fixtures/scenes").join(file);
-    Scene::read_with(path, set).expect("a sound scene")
+    Scene::read_with(path, set).expect("a valid scene")
 }
 
 fn run(scene: &Scene, folder: &Path) -> Summary {
@@ -143,7 +143,7 @@ fn multiples_stand_in_the_mean_of_some_starts(folder: &Path) {
 /// The shaft speeds up against an outer ring that turns the other way and has a spall: families have orders
 /// of the shaft against the ring, over that angle BPFO stands within a resolution of kinematics, and rollers
 /// pass the spall when the rings have come so far. The housing is damped: otherwise it would
-/// ring on from knock to knock. Source: THEORY §5.1, rolling
+/// ring on from impact to impact. Source: THEORY §5.1, rolling
 /// without slip.
 #[test]
 fn analytic_bpfo_follows_the_difference_of_two_speeds() {
@@ -158,7 +158,7 @@ fn analytic_bpfo_follows_the_difference_of_two_speeds() {
         cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: 56),
         contact: (surface: arc, friction: 0.05), output: (frames: None),
         solver: (duration_ms: 600, mass_damping_per_s: 5000, structural_damping: None))";
-    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let scene = Scene::parse(text, "here").expect("a valid scene");
     let folder = Scratch::create("two-rings");
     let summary = run(&scene, &folder.join("run"));
     let duty = summary.duty.as_ref().expect("a speed that changes");

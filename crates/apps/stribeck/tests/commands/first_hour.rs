@@ -109,8 +109,8 @@ fn behaves_a_plan_is_written_for_scripts() {
     desk.refuses("plan absent.ron --json", &["absent.ron"]);
 }
 
-/// Knocks of an outer raceway of a 6205 at 1200 rpm.
-pub(crate) fn knocks(height: f64, seed: u64) -> Vec<f64> {
+/// Impacts of an outer raceway of a 6205 at 1200 rpm.
+pub(crate) fn impacts(height: f64, seed: u64) -> Vec<f64> {
     let mut noise = Noise::new(seed);
     (0..60_000)
         .map(|n| {
@@ -124,7 +124,7 @@ pub(crate) fn knocks(height: f64, seed: u64) -> Vec<f64> {
 fn planted_a_sound_and_a_damaged_record() {
     let desk = Desk::new("compare-records");
     for (name, height) in [("sound.mat", 0.0), ("damaged.mat", 3.0)] {
-        let channel = Channel::held("housing", knocks(height, 7)).in_unit(Some("g".to_owned()));
+        let channel = Channel::held("housing", impacts(height, 7)).in_unit(Some("g".to_owned()));
         mat5::write(&desk.join(name), &[channel], &[]).expect("writable");
     }
     let machine = ["--bearing=6205", "--speed-rpm=1200", "--rate-hz=12800", "--unit=g"];
@@ -139,7 +139,7 @@ fn planted_a_sound_and_a_damaged_record() {
     assert_eq!(json(&both)["records"].as_array().map(Vec::len), Some(2));
     let page = desk.text("damaged-analysis/report.html");
     assert!(page.contains("data:audio/wav;base64,"), "the record cannot be heard");
-    // The same over the sound one, and with the mistakes that are made with it.
+    // The same over the healthy one, and with the mistakes that are made with it.
     let over = |baseline: &str, more: &[&str]| {
         let own = ["analyse", "damaged.mat", "--out=over", "--baseline", baseline];
         desk.run(&[&own[..], &machine, more].concat())
@@ -303,7 +303,7 @@ fn issue_answers_from_a_pipe_are_read() {
 }
 
 /// Healthy bearings made tens of g by their facets, and were called damaged; so were rollers without a profile, which
-/// enter the load with a knock.
+/// enter the load with an impact.
 #[test]
 fn issue_a_sound_bearing_of_ones_own_is_judged_sound() {
     const MOST_G: f64 = 2.0;

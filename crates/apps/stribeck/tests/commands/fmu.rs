@@ -56,7 +56,7 @@ fn peer_fmpy_runs_a_rotor_on_our_fmu() {
     const UNBALANCE_KG_M: f64 = 0.1;
     let (Some(fmu), Some(python)) = (fmu(), python_with(&["fmpy"])) else { return };
     let desk = Desk::new("fmu");
-    let scene = Scene::read(SCENE).expect("a sound scene");
+    let scene = Scene::read(SCENE).expect("a valid scene");
     let load = scene.operation.load_n;
     let turns = scene.kinematics();
     let (bpfo, shaft) = (turns.bpfo_hz.abs(), turns.shaft_hz.abs());

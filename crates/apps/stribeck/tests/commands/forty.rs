@@ -5,7 +5,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 
 use crate::common::{Desk, STRIBECK};
-use crate::first_hour::knocks;
+use crate::first_hour::impacts;
 use stribeck_formats::{Channel, mat5, wav};
 use stribeck_testing::said;
 
@@ -102,7 +102,7 @@ const FORTY: [(&str, Then); 59] = [
 #[test]
 fn behaves_the_first_hour_of_somebody_new() {
     let desk = Desk::new("forty");
-    let samples = knocks(3.0, 7);
+    let samples = impacts(3.0, 7);
     let rows = |form: &dyn Fn(usize, f64) -> String| -> String {
         samples.iter().enumerate().map(|(n, x)| form(n, *x)).collect()
     };

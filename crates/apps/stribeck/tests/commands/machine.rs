@@ -24,7 +24,7 @@ const BEHIND: [&str; 3] = [
 ];
 
 /// The path behind which two runs were recorded is found again from their records, by other simulations of the same
-/// bearing, to 3 dB (median) where it passes the spall's knocks; the record is judged as a measured one.
+/// bearing, to 3 dB (median) where it passes the spall's impacts; the record is judged as a measured one.
 #[test]
 fn planted_the_machine_of_two_runs_is_found_again() {
     let desk = desk("machine");

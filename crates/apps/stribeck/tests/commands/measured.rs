@@ -4,8 +4,8 @@ use crate::common::Desk;
 use stribeck_formats::{Channel, Recording, mat5};
 use stribeck_testing::{Noise, assert_has, said, says};
 
-/// Knocks of an outer raceway of a 6205 at 1200 rpm.
-fn knocks(rate_hz: f64) -> Vec<f64> {
+/// Impacts of an outer raceway of a 6205 at 1200 rpm.
+fn impacts(rate_hz: f64) -> Vec<f64> {
     let mut noise = Noise::new(5);
     (0..100_000)
         .map(|n| {
@@ -34,7 +34,7 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
             "`rpm_a` is 1200 and `rpm_b` is 900: neither is taken for the speed; give `--speed-rpm`",
         ),
     ] {
-        write(&desk, "a.mat", knocks(12_800.0), numbers);
+        write(&desk, "a.mat", impacts(12_800.0), numbers);
         let words = ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing"];
         let text = said(&desk.run(&words));
         assert!(text.contains(says), "{text}");
@@ -44,16 +44,16 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
 #[test]
 fn planted_a_record_gives_a_verdict_findings_and_a_page() {
     let desk = Desk::new("measured");
-    write(&desk, "a.mat", knocks(12_800.0), &[("shaft_rpm", 1200.0)]);
+    write(&desk, "a.mat", impacts(12_800.0), &[("shaft_rpm", 1200.0)]);
     let text = said(&desk.succeeds("analyse a.mat --rate-hz 12800 --bearing 6205 --channel housing"));
     assert!(text.contains("a defect of the outer raceway (BPFO at 71.50 Hz"), "{text}");
     assert!(text.contains("the speed of 1200 rpm is that of `shaft_rpm`"), "{text}");
     let findings = desk.json("a-analysis/findings.json");
     assert_eq!(findings["families"][0]["name"], "BPFO");
     assert_eq!(findings["families"][0]["claimed"], true);
-    // A passage has one knock, which is no length.
+    // A passage has one impact, which is no length.
     assert!(findings["spall_mm"].is_null() && findings["spall_below_mm"].as_f64().is_some_and(|mm| mm > 0.0));
-    assert!(text.contains("no second event follows each knock"), "{text}");
+    assert!(text.contains("no second event follows each impact"), "{text}");
     for key in ["rate_hz", "speed_rpm", "resolution_hz", "verdict"] {
         assert!(!findings[key].is_null(), "{key}");
     }
@@ -75,7 +75,7 @@ fn planted_a_record_gives_a_verdict_findings_and_a_page() {
 #[test]
 fn behaves_the_verdict_on_one_page_is_written_beside_the_report() {
     let desk = Desk::new("measured-pdf");
-    write(&desk, "a.mat", knocks(12_800.0), &[("shaft_rpm", 1200.0)]);
+    write(&desk, "a.mat", impacts(12_800.0), &[("shaft_rpm", 1200.0)]);
     let words = "analyse a.mat --rate-hz 12800 --bearing 6205 --channel housing";
     let mut command = desk.command(format!("{words} --pdf").as_str());
     let output = command.env("STRIBECK_BROWSER", "/nowhere/chromium").output().expect("it starts");
@@ -189,7 +189,7 @@ fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle()
     let desk = Desk::new("ridge");
     let mut noise = Noise::new(8);
     let rate_hz = 12_800.0;
-    // From 1200 to 1500 rpm in 24 s, an outer raceway of a 6205 knocking, and a weak line of the shaft.
+    // From 1200 to 1500 rpm in 24 s, an outer raceway of a 6205 with impacts, and a weak line of the shaft.
     let samples = (0..300_000)
         .map(|n| {
             let t = f64::from(n) / rate_hz;
@@ -223,7 +223,7 @@ fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
     let rate_hz = 12_800.0;
     // 18 t + 0.3 t² turns: the record lasts 5.12 s, the tachometer 6.25 s.
     let turns = |n: usize| 18.0 * n as f64 / rate_hz + 0.3 * (n as f64 / rate_hz).powi(2);
-    let acc = knocks(rate_hz)[..65_536].to_vec();
+    let acc = impacts(rate_hz)[..65_536].to_vec();
     let tacho = (0..80_000).map(|n| f64::from(turns(n).fract() < 0.1)).collect();
     let speed = (0..acc.len()).map(|n| 60.0 * (18.0 + 0.6 * n as f64 / rate_hz)).collect();
     let channels = [("acc", acc), ("tacho", tacho), ("n_rpm", speed), ("fs", vec![rate_hz])];
@@ -279,13 +279,14 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
     }
 }
 
-/// `--reference` gave no limits for families, because none stands out in a sound record.
+/// `--reference` gave no limits for families, because none stands out in a healthy record.
 #[test]
 fn issue_sound_records_give_limits_for_each_family() {
     let desk = Desk::new("alarm-families");
     let mut noise = Noise::new(11);
     for n in 0..7 {
-        let samples = if n == 6 { knocks(12_800.0) } else { (0..100_000).map(|_| noise.uniform()).collect() };
+        let samples =
+            if n == 6 { impacts(12_800.0) } else { (0..100_000).map(|_| noise.uniform()).collect() };
         write(&desk, &format!("{n}.mat"), samples, &[]);
     }
     desk.succeeds(
@@ -305,7 +306,7 @@ fn behaves_several_records_are_a_series() {
     let mut noise = Noise::new(9);
     let sound: Vec<f64> = (0..100_000).map(|_| noise.uniform()).collect();
     // The second one is cut off at half of its largest value.
-    let whole = knocks(12_800.0);
+    let whole = impacts(12_800.0);
     let rail = 0.5 * whole.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let clipped = whole.iter().map(|x| x.clamp(-rail, rail)).collect();
     for (name, samples) in [("before.mat", sound), ("after.mat", clipped)] {
@@ -338,20 +339,20 @@ fn behaves_several_records_are_a_series() {
     assert!(desk.join("T/1-before/findings.json").exists());
 }
 
-/// Snapshots of one channel whose outer raceway knocks from the seventh on, in the forms of two public
+/// Snapshots of one channel whose outer raceway strikes from the seventh on, in the forms of two public
 /// collections of runs to failure: tables without a header, times in four columns, and files without a sample
 /// rate whose names are times.
 #[test]
 fn planted_a_folder_is_a_series_with_an_onset() {
     let desk = Desk::new("series");
     let mut noise = Noise::new(12);
-    let knocks = knocks(12_800.0);
+    let impacts = impacts(12_800.0);
     let loud = |n: usize| if n < 7 { 0.0 } else { 0.2 * (n - 5) as f64 };
     for (folder, separator) in [("times", ","), ("semicolons", ";"), ("names", "\t")] {
         std::fs::create_dir(desk.join(folder)).unwrap();
         for n in 1..=10 {
-            let row = |(at, knock): (usize, &f64)| {
-                let x = noise.uniform() + loud(n) * knock;
+            let row = |(at, impact): (usize, &f64)| {
+                let x = noise.uniform() + loud(n) * impact;
                 let us = (1e6 * at as f64 / 12_800.0).round() + 999_000.0;
                 let (s, us) = (12 + us as u64 / 1_000_000, us as u64 % 1_000_000);
                 let clock = [9.to_string(), 39.to_string(), s.to_string(), us.to_string()];
@@ -359,7 +360,7 @@ fn planted_a_folder_is_a_series_with_an_onset() {
                 let all = if folder == "names" { values.to_vec() } else { [&clock[..], &values].concat() };
                 all.join(separator) + "\n"
             };
-            let text: String = knocks.iter().take(40_000).enumerate().map(row).collect();
+            let text: String = impacts.iter().take(40_000).enumerate().map(row).collect();
             let name =
                 if folder == "names" { format!("2004.02.12.{n}.52.39") } else { format!("acc_{n}.csv") };
             std::fs::write(desk.join(folder).join(name), text).unwrap();
@@ -387,9 +388,9 @@ fn planted_a_folder_is_a_series_with_an_onset() {
 fn planted_channels_of_one_machine_make_one_verdict() {
     let desk = Desk::new("together");
     let mut noise = Noise::new(9);
-    let knocks = knocks(12_800.0);
-    let far: Vec<f64> = knocks.iter().map(|x| 0.2 * x + 0.2 * noise.uniform()).collect();
-    let channels = [("drive_end", knocks), ("fan_end", far)];
+    let impacts = impacts(12_800.0);
+    let far: Vec<f64> = impacts.iter().map(|x| 0.2 * x + 0.2 * noise.uniform()).collect();
+    let channels = [("drive_end", impacts), ("fan_end", far)];
     let channels = channels.map(|(name, samples)| Channel::held(name, samples).at_rate(Some(12_800.0)));
     mat5::write(&desk.join("both.mat"), &channels, &[]).unwrap();
     mat5::write(&desk.join("one.mat"), &channels[..1], &[]).unwrap();
@@ -408,10 +409,10 @@ fn planted_channels_of_one_machine_make_one_verdict() {
     assert!(!done && text.contains("takes two at least"), "{text}");
 }
 
-/// Knocks beside their times, as a table.
+/// Impacts beside their times, as a table.
 fn table(head: &str, rate_hz: f64, time: impl Fn(f64) -> String) -> String {
     let row = |(n, x): (usize, f64)| format!("{},{x:.6}\n", time(n as f64 / rate_hz));
-    head.to_owned() + &knocks(rate_hz).into_iter().enumerate().map(row).collect::<String>()
+    head.to_owned() + &impacts(rate_hz).into_iter().enumerate().map(row).collect::<String>()
 }
 
 /// The time column was diagnosed, and showed no defect; one in milliseconds was read in seconds.
@@ -460,7 +461,7 @@ fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
 #[test]
 fn roundtrip_an_exported_record_says_its_rate() {
     let desk = Desk::new("measured-export");
-    write(&desk, "ex.mat", knocks(12_800.0), &[]);
+    write(&desk, "ex.mat", impacts(12_800.0), &[]);
     let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
     says(&desk.run(&words), &["a defect of the outer raceway"]);
     // A limit of the velocity asks for the unit that it needs.
@@ -474,7 +475,7 @@ fn roundtrip_an_exported_record_says_its_rate() {
     desk.succeeds(&[&words[..], &["--scale", "-0.5"]].concat());
 }
 
-/// Two knocks 2.5 ms apart each time an element of a 6205 at 1200 rpm passes, never quite on time.
+/// Two impacts 2.5 ms apart each time an element of a 6205 at 1200 rpm passes, never quite on time.
 fn edges(rate_hz: f64) -> Vec<f64> {
     let mut noise = Noise::new(7);
     let mut signal: Vec<f64> = (0..150_000).map(|_| 0.5 * noise.uniform()).collect();

@@ -57,7 +57,7 @@ fn pressure(forces: &[(f64, f64)]) -> [f64; 2] {
 #[test]
 fn analytic_contacts_of_the_physical_scene_are_hertzian() {
     let text = include_str!("../../../../../fixtures/scenes/physical.ron");
-    let mut scene = Scene::parse(text, "physical.ron").expect("a sound scene");
+    let mut scene = Scene::parse(text, "physical.ron").expect("a valid scene");
     // One roller stands in the middle of the load.
     (scene.defect, scene.output.frames) = (None, None);
     scene.bearing.first_roller_deg = 90.0;

@@ -22,7 +22,7 @@ const PLANNED_STEP: f64 = 0.2;
 
 fn its_plan_holds(scene: &Scene, info: &RunInfo) {
     let scene = &scene.resolve();
-    let assembly = Assembly::new(scene).expect("a sound scene");
+    let assembly = Assembly::new(scene).expect("a valid scene");
     let element_time_step_s = assembly.element_time_step_s(scene);
     let mesh = MeshFacts { counts: assembly.mesh_info(), element_time_step_s };
     let plan = Plan::of(scene, &mesh).expect("a loaded bearing");
@@ -34,7 +34,7 @@ fn its_plan_holds(scene: &Scene, info: &RunInfo) {
 /// Bit for bit the mesh that the scene makes: displacements of frames count from it.
 fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
     let read = RunMesh::read(folder.join("mesh.vtu")).expect("a mesh");
-    let made = Assembly::new(&scene.resolve()).expect("a sound scene").model.mesh;
+    let made = Assembly::new(&scene.resolve()).expect("a valid scene").model.mesh;
     let places = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(&x, &y)| [x, y]).collect::<Vec<_>>();
     assert!(read.reference == places(&made.x, &made.y));
     assert!(read.quads == made.quads && read.triangles == made.triangles);
@@ -52,7 +52,7 @@ fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
 #[test]
 fn behaves_a_simulated_passage_gives_events_length_and_pictures() {
     let scene = Scene::parse(include_str!("../../../../../fixtures/scenes/quick.ron"), "quick.ron")
-        .expect("a sound scene");
+        .expect("a valid scene");
     let folder = Scratch::new("quick");
     let info = complete(&scene, folder.path());
     its_plan_holds(&scene, &info);

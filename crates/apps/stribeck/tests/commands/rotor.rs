@@ -8,7 +8,7 @@ use crate::common::Desk;
 use stribeck_formats::Recording;
 use stribeck_testing::{peer::python_with, said};
 
-/// A sound NU 205 in a rigid housing without gravity, whose contact is as stiff as steel rather than as
+/// A healthy NU 205 in a rigid housing without gravity, whose contact is as stiff as steel rather than as
 /// quick: half of ROSS's rotor moves with the ring.
 const SOUND: &str = "(
     name: \"sound\",

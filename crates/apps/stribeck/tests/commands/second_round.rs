@@ -10,7 +10,7 @@ use stribeck_testing::{Noise, said, says};
 
 const RATE_HZ: f64 = 12_800.0;
 
-/// A record and its tachometer of a shaft that goes from 15 to 25 Hz, outer-race knocks of a 6205 in it.
+/// A record and its tachometer of a shaft that goes from 15 to 25 Hz, outer-race impacts of a 6205 in it.
 fn run_up() -> (Vec<f64>, Vec<f64>) {
     let (mut noise, mut turns) = (Noise::new(1), 0.0);
     let count = 1 << 16;
@@ -19,8 +19,8 @@ fn run_up() -> (Vec<f64>, Vec<f64>) {
             let hz = 15.0 + 10.0 * n as f64 / count as f64;
             turns += hz / RATE_HZ;
             let since = (turns * 3.5848) % 1.0 / (hz * 3.5848);
-            let knock = 2.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3000.0 * since).sin();
-            (0.7 * noise.uniform() + knock, f64::from(turns % 1.0 < 0.1))
+            let impact = 2.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3000.0 * since).sin();
+            (0.7 * noise.uniform() + impact, f64::from(turns % 1.0 < 0.1))
         })
         .unzip()
 }

@@ -7,7 +7,7 @@ use crate::common::Desk;
 use stribeck_testing::Noise;
 
 /// Two and a half seconds of a gear with 23 teeth at 25 Hz and of a 6205 on its shaft whose outer raceway
-/// knocks, in m/s².
+/// impacts, in m/s².
 fn desk(name: &str) -> Desk {
     const RATE_HZ: f64 = 12_800.0;
     let desk = Desk::of(name, &["analyse", "record.csv"]);
@@ -17,8 +17,8 @@ fn desk(name: &str) -> Desk {
         let t = n as f64 / RATE_HZ;
         let mesh = (1.0 + 0.3 * (TAU * 25.0 * t).cos()) * (TAU * 575.0 * t).cos();
         let since = t.rem_euclid(1.0 / (0.995 * 3.585 * 25.0));
-        let knock = 6.0 * (-since / 1e-3).exp() * (TAU * 3_000.0 * since).sin();
-        text += &format!("{t:.9},{:.6}\n", mesh + knock + noise.uniform());
+        let impact = 6.0 * (-since / 1e-3).exp() * (TAU * 3_000.0 * since).sin();
+        text += &format!("{t:.9},{:.6}\n", mesh + impact + noise.uniform());
     }
     fs::write(desk.join("record.csv"), text).expect("a record");
     desk

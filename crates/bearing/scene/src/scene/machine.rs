@@ -26,7 +26,7 @@ group! {
         /// Path as the gain from force to acceleration at some frequencies, straight between them in
         /// logarithms, with the least delay that such gains can have.
         pub gains: Vec<GainScene> = Vec::new(), omitted();
-        /// How long a path by `gains` rings behind a knock, until it has died away to 1/e [ms]. The gains stay.
+        /// How long a path by `gains` rings behind an impact, until it has died away to 1/e [ms]. The gains stay.
         pub ring_ms: f64 = 0.0, within(0.0, 1000.0), omitted();
         /// Path as the sum of some modes, beside `gains`; four usual ones where there are no `gains` either.
         pub modes: Vec<PathModeScene> = Vec::new(), omitted();

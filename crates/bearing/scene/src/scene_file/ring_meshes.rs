@@ -30,7 +30,7 @@ fn walls(scene: &Scene, ring: DefectRing, field: &str) -> Option<Finding> {
     let mut or = "";
     let (path, remedy) = if scene.defect.as_ref().is_some_and(|defect| defect.ring == ring) {
         or = ", and `defect: None` in the scene";
-        ("defect".to_owned(), Remedy::new("defect", "`None`").value("None", "a sound raceway"))
+        ("defect".to_owned(), Remedy::new("defect", "`None`").value("None", "a healthy raceway"))
     } else {
         let steep = |deviation: &DeviationScene| deviation.groove().is_some_and(|groove| groove.ring == ring);
         let at = scene.defects.iter().position(steep)?;

@@ -243,7 +243,7 @@ impl Guards {
     }
 
     /// A cage that pushes a roller with more than the bearing's load has jammed it, unless all loads are
-    /// light: rollers that skid knock at it.
+    /// light: rollers that skid strike at it.
     fn jam(&self, info: &mut RunInfo, push: f64, when: &When) {
         let before = info.guards.cage_push_n;
         info.guards.cage_push_n = before.max(push);

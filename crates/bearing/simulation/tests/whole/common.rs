@@ -92,7 +92,7 @@ pub(crate) fn small(more: &str) -> Scene {
           contact: (surface: arc, penalty_scale: 1, friction: 0.05),
           solver: (duration_ms: 2, mass_damping_per_s: 2000, structural_damping: None), {more})"
     );
-    Scene::parse(&text, "here").expect("a sound scene")
+    Scene::parse(&text, "here").expect("a valid scene")
 }
 
 /// A whole run in `folder`, which says how it comes on.

@@ -12,7 +12,7 @@ use stribeck_store::run_dir::{Run, RunDir};
 use stribeck_store::run_info::Status;
 use stribeck_testing::{Scratch, side_by_side};
 
-/// Sound raceways in elements of 1 mm with these deviations.
+/// Healthy raceways in elements of 1 mm with these deviations.
 fn scene(defects: &str) -> Scene {
     let mut scene = running(defects, 1.0);
     scene.mesh.grading = None;
@@ -162,7 +162,7 @@ fn invariant_rectangular_spalls_are_cut_as_the_defect_is() {
 #[test]
 fn conserves_energy_and_carries_the_load_over_every_form() {
     let scene = running(ALL, 2.5);
-    // Roller 2, too small by 8 µm, carries less than a sound one in its place would.
+    // Roller 2, too small by 8 µm, carries less than a healthy one in its place would.
     let mut round = scene.clone();
     round.defects.retain(|deviation| deviation.on != RollingSurface::Roller(2));
     let one = |scene: &Scene| {

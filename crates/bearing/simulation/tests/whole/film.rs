@@ -22,7 +22,7 @@ fn oiled(duration_ms: f64) -> Scene {
 fn run(scene: &Scene, folder: &Scratch, threads: usize) -> (RunInfo, Run) {
     let dir = RunDir::create(folder.path()).expect("the folder is new");
     let info =
-        simulate(scene, &dir, &host(threads), &mut |_| ControlFlow::Continue(())).expect("a sound scene");
+        simulate(scene, &dir, &host(threads), &mut |_| ControlFlow::Continue(())).expect("a valid scene");
     (info, Run::read(folder.path()).expect("what was just written"))
 }
 

@@ -54,9 +54,9 @@ fn analytic_mass_damping_brakes_no_frame() {
               mesh: (size_mm: 0.7, roller_facets: 64), \
              solver: (mass_damping_per_s: 2000, structural_damping: None))"
         );
-        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let scene = Scene::parse(&text, "here").expect("a valid scene");
         let mesh = ReducedMesh::new(&scene.resolve()).expect("modes");
-        modal_bearing(&scene.resolve(), mesh.reduction).expect("a sound scene")
+        modal_bearing(&scene.resolve(), mesh.reduction).expect("a valid scene")
     };
     let frame = 1.5;
     let bearing = of("springs(stiffness_n_um: 1, damping_n_s_m: 0, mass_kg: 1.5)");

@@ -14,7 +14,7 @@ use stribeck_store::{
 use stribeck_testing::Scratch;
 
 fn lean() -> Scene {
-    Scene::parse(include_str!("../../../../../fixtures/scenes/lean.ron"), "lean.ron").expect("a sound scene")
+    Scene::parse(include_str!("../../../../../fixtures/scenes/lean.ron"), "lean.ron").expect("a valid scene")
 }
 
 fn assembled(scene: &Scene) -> Assembly {
@@ -97,7 +97,7 @@ fn behaves_thin_rings_stay_fine() {
     scene.mesh.roller_facets = 88;
     let uniform = assembled(&scene).model.mesh;
     scene.mesh.grading = Some(GradingScene { coarse_mm: 8.0, fine_layers: 2 });
-    scene.validate().expect("five layers are a sound ring");
+    scene.validate().expect("five layers are a healthy ring");
     let graded = assembled(&scene).model.mesh;
     let body = |mesh: &Mesh, i: usize| (mesh.bodies[i].name.clone(), mesh.bodies[i].quads.len());
     for ring in [0, 1] {
@@ -135,7 +135,7 @@ fn refuses_with_field_and_remedy() {
 fn first_forces(scene: &Scene) -> Vec<f64> {
     let folder = Scratch::new("lean");
     let dir = RunDir::create(folder.path()).expect("the folder is new");
-    let info = simulate(scene, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("a sound scene");
+    let info = simulate(scene, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("a valid scene");
     assert_eq!(info.status, Status::Complete);
     let run = Run::read(folder.path()).expect("a finished run can be read");
     let force = |i: usize, c: &str| {

@@ -17,7 +17,7 @@ const LOAD_N: f64 = 3000.0;
 const RIGID: &str = "housing: rigid(mass_kg: 1)";
 const SPRINGS: &str = "housing: springs(stiffness_n_um: 200, damping_n_s_m: 3000, mass_kg: 20)";
 
-/// A sound NU 205 on a coarse mesh, dry, frictionless and without weight, under a load down to the left.
+/// A healthy NU 205 on a coarse mesh, dry, frictionless and without weight, under a load down to the left.
 fn sound(more: &str) -> Scene {
     loaded(240, more)
 }
@@ -31,7 +31,7 @@ fn loaded(angle_deg: i32, more: &str) -> Scene {
           operation: (load_n: {LOAD_N}, load_angle_deg: {angle_deg}, speed_rpm: 600, gravity_m_s2: 0),
           solver: (duration_ms: 2, mass_damping_per_s: 0, structural_damping: None), {more})"
     );
-    Scene::parse(&text, "here").expect("a sound scene")
+    Scene::parse(&text, "here").expect("a valid scene")
 }
 
 fn parts(scene: &Scene, folder: &Scratch) -> OnShaft {

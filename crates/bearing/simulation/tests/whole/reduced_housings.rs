@@ -257,7 +257,7 @@ fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
         mesh: (size_mm: 0.5, roller_facets: 64), contact: (surface: arc, penalty_scale: 1),
         operation: (load_n: 1000, speed_rpm: 900), output: (frames: None),
         solver: (duration_ms: 0.05, mass_damping_per_s: 5000, structural_damping: None))";
-    let balls = Scene::parse(text, "here").expect("a sound scene");
+    let balls = Scene::parse(text, "here").expect("a valid scene");
     let folder = Scratch::create("reduced-pedestal");
     let loads = |name: &str, model: ModelScene, duration_ms: f64| {
         let mut scene = Scene { model, ..balls.clone() };
@@ -291,7 +291,7 @@ fn behaves_a_run_says_that_its_modes_are_too_few() {
             "(bearing: \"NU 205\", model: {model}, film: None, defect: None, output: (frames: None),
               operation: (load_n: 1500, speed_rpm: 900), solver: (duration_ms: 0.05))"
         );
-        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let scene = Scene::parse(&text, "here").expect("a valid scene");
         let info = run(&scene, &folder, if warns { "few" } else { "own" }, 1);
         let says = info.warnings.iter().any(|text| text.contains("bends between the rollers"));
         assert_eq!(says, warns, "{model}: {:?}", info.warnings);

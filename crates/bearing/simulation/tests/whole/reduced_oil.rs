@@ -179,7 +179,7 @@ fn behaves_films_between_turning_rings() {
         contact: (surface: arc, penalty_scale: 1, friction: 0.05), \
         solver: (duration_ms: 2, structural_damping: None), \
         operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500, outer_speed_rpm: -1000))";
-    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let scene = Scene::parse(text, "here").expect("a valid scene");
     let folder = Scratch::create("oil-turning");
     let info = complete(&scene, &folder, "reduced");
     complete(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
@@ -247,7 +247,7 @@ fn conserves_energy_while_films_answer_to_a_soft_seat() {
         operation: (load_n: 3000, speed_rpm: 1500), contact: (penalty_scale: 1, friction: 0.05),
         mesh: (size_mm: 0.36, roller_facets: 224), output: (frames: None),
         solver: (duration_ms: 15, mass_damping_per_s: 5000, structural_damping: None))";
-    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let scene = Scene::parse(text, "here").expect("a valid scene");
     let info = complete(&scene, &Scratch::create("reduced-soft-seat"), "run");
     println!("off by {:.2e} of the peak strain energy", info.energy.max_relative_error);
     assert!(info.energy.max_relative_error < 1e-3, "{:?}", info.energy);

@@ -101,7 +101,7 @@ fn behaves_thin_and_slow_bearings_find_their_equilibrium() {
     for ((name, text), thickness_mm, speed_rpm) in
         [(lean, 5.0, 500.0), (lean, 30.0, 50.0), (quick, 30.0, 1.0), (quick, 30.0, 50.0)]
     {
-        let mut scene = Scene::parse(text, name).expect("a sound scene");
+        let mut scene = Scene::parse(text, name).expect("a valid scene");
         scene.bearing.thickness_mm = thickness_mm;
         scene.operation.speed_rpm = speed_rpm;
         scene.solver.duration_ms = 0.02;
@@ -293,7 +293,7 @@ fn golden_traces() {
     reduced.solver.duration_ms = 0.5;
     let balls = "(bearing: \"6203\", model: reduced(), housing: pedestal(), output: (frames: None), \
                  solver: (duration_ms: 0.5))";
-    let balls = Scene::parse(balls, "here").expect("a sound scene");
+    let balls = Scene::parse(balls, "here").expect("a valid scene");
     let mut digest = crc32fast::Hasher::new();
     for (name, scene) in [("full", full), ("reduced", reduced), ("balls", balls)] {
         let path = format!("{folder}{name}.csv");

@@ -201,13 +201,13 @@ mod tests {
     use super::super::HARMONICS;
     use super::*;
 
-    /// Knocks 19.8 times a second in 5 s, each of a few milliseconds: segments of a third of a second hold
+    /// Impacts 19.8 times a second in 5 s, each of a few milliseconds: segments of a third of a second hold
     /// 6.6 of them.
     #[test]
     fn issue_lines_of_a_slow_bearing_stand_in_the_spectrum_of_the_whole_record() {
         const RATE_HZ: f64 = 2000.0;
-        let knock = |t: f64| (-(t.rem_euclid(1.0 / 19.8)) / 4e-3).exp();
-        let signal: Vec<f64> = (0..10_000).map(|n| knock(f64::from(n) / RATE_HZ)).collect();
+        let impact = |t: f64| (-(t.rem_euclid(1.0 / 19.8)) / 4e-3).exp();
+        let signal: Vec<f64> = (0..10_000).map(|n| impact(f64::from(n) / RATE_HZ)).collect();
         let density = Welch::for_grid(RATE_HZ, signal.len(), GRID_HZ).unwrap().estimate(&signal).unwrap();
         assert!(!artefacts::shows_family(&density, 19.8));
         let fine = fine_density(&signal, &density, 19.8).unwrap().expect("99 periods");

@@ -3,7 +3,7 @@
 //! The power of a record in a third octave is that of the simulated force times the square of the gain, plus
 //! that of the background. Gains are found by least squares of the logarithms of these powers over all records
 //! of damaged bearings, with the second difference of their logarithms from octave to octave as a
-//! regularisation; the background is what a record of the sound machine has beyond its own force behind this
+//! regularisation; the background is what a record of the healthy machine has beyond its own force behind this
 //! path. Both are found in turns.
 
 use stribeck_dsp::{Sensor, statistics};
@@ -23,7 +23,7 @@ const ROUNDS: usize = 30;
 const STEPS: usize = 20;
 /// Largest change of a logarithm of a power in one step.
 const LONGEST_STEP: f64 = 3.0;
-/// Least share of the sound record's power that is background: a force that explains more is not known so well.
+/// Least share of the healthy record's power that is background: a force that explains more is not known so well.
 const LEAST_SHARE: f64 = 0.05;
 /// Part of the sample rate up to which records are compared: recorders filter what is above.
 const COMPARED: f64 = 0.45;
@@ -125,7 +125,7 @@ pub fn fit(records: &[Known]) -> Result<MachineScene, Error> {
 const RINGS_MS: [f64; 12] = [0.0, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0];
 
 /// The machine with the ringing that makes the kurtosis of the damaged bearings' records: the gains say nothing of
-/// phases, and without ringing knocks are as sharp as gains allow.
+/// phases, and without ringing impacts are as sharp as gains allow.
 fn ringing(machine: MachineScene, records: &[Known]) -> Result<MachineScene, Error> {
     let mut best = (f64::INFINITY, machine.clone());
     for ring_ms in RINGS_MS {
@@ -161,7 +161,7 @@ struct Path {
     background: Vec<f64>,
 }
 
-/// What sound records have beyond their force behind a path; nothing where there is none.
+/// What healthy records have beyond their force behind a path; nothing where there is none.
 fn background(sound: &[&Octaves], gains: &[f64]) -> Vec<f64> {
     let of = |band: usize| {
         let rest = sound.iter().map(|o| {
@@ -279,7 +279,7 @@ mod tests {
         }
     }
 
-    /// A path behind which records were made is found again from one of them and one of the sound machine, to 1.5
+    /// A path behind which records were made is found again from one of them and one of the healthy machine, to 1.5
     /// dB where its bearing excites it: a third octave of random blows scatters by half a decibel, and straight
     /// lines between four gains have corners that a smooth path rounds.
     #[test]

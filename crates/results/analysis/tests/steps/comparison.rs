@@ -9,7 +9,7 @@ use stribeck_dsp::channel::Channel;
 use stribeck_testing::Noise;
 use stribeck_theory::catalogue::CatalogueBearing;
 
-/// Knocks of the outer raceway of a 6205 at 1200 rpm, `height` times as strong as the noise.
+/// Impacts of the outer raceway of a 6205 at 1200 rpm, `height` times as strong as the noise.
 fn record(label: &str, height: f64, unit: &str, scale: f64, seed: u64) -> Side {
     let (rate_hz, mut noise) = (12_800.0, Noise::new(seed));
     let samples = (0..65_536).map(|n| {
@@ -19,7 +19,7 @@ fn record(label: &str, height: f64, unit: &str, scale: f64, seed: u64) -> Side {
     let channel = Channel::held("housing", samples.collect()).in_unit(Some(unit.to_owned()));
     let bearing = CatalogueBearing::parse("6205").expect("of the catalogue");
     let machine = Machine { speed_rpm: Some(1200.0), bearing: Some(bearing), ..Machine::default() };
-    Side::of_record(label, &Analysis::of(&channel, rate_hz, &machine).expect("a sound record"))
+    Side::of_record(label, &Analysis::of(&channel, rate_hz, &machine).expect("a valid record"))
 }
 
 #[test]

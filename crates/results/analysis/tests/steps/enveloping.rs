@@ -1,12 +1,12 @@
-//! Envelope spectra of knocks.
+//! Envelope spectra of impacts.
 
 use std::f64::consts::TAU;
 
 use stribeck_analysis::enveloping::analyse;
 use stribeck_analysis::tones::{self, PredictedLine};
 
-/// Knocks 90.1 times a second that ring at 12 kHz.
-fn knocks(seconds: f64) -> Vec<f64> {
+/// Impacts 90.1 times a second that ring at 12 kHz.
+fn impacts(seconds: f64) -> Vec<f64> {
     (0..(1e5 * seconds) as usize)
         .map(|n| {
             let since = (n as f64 * 1e-5).rem_euclid(1.0 / 90.1);
@@ -20,8 +20,8 @@ fn family() -> Vec<PredictedLine> {
 }
 
 #[test]
-fn planted_knocks_show_their_rate_and_its_multiples() {
-    let (_, finding) = analyse(&knocks(0.4), 1e5, &family()).unwrap().unwrap();
+fn planted_impacts_show_their_rate_and_its_multiples() {
+    let (_, finding) = analyse(&impacts(0.4), 1e5, &family()).unwrap().unwrap();
     assert!(finding.periods > 36.0);
     for line in &finding.lines {
         // Half of the resolution of 2.5 Hz.
@@ -31,8 +31,8 @@ fn planted_knocks_show_their_rate_and_its_multiples() {
 
 #[test]
 fn refuses_a_short_record_and_says_why() {
-    let why = analyse(&knocks(0.03), 1e5, &family()).unwrap().unwrap_err();
+    let why = analyse(&impacts(0.03), 1e5, &family()).unwrap().unwrap_err();
     assert!(why.contains("2.7 periods"), "{why}");
     stribeck_testing::assert_refused(analyse(&[], 1e5, &family()).unwrap(), "the record is empty");
-    stribeck_testing::assert_refused(analyse(&knocks(0.4), 1e5, &[]).unwrap(), "nothing passes a defect");
+    stribeck_testing::assert_refused(analyse(&impacts(0.4), 1e5, &[]).unwrap(), "nothing passes a defect");
 }

@@ -95,8 +95,8 @@ fn headline(of: &Subject<'_>) -> String {
             .iter()
             .filter(|family| wanted(family))
             .map(|family| match family.measured_hz {
-                Some(hz) => format!("knocks of {} at {hz:.1} Hz ({})", family.name.part(), family.name),
-                None => format!("knocks of {} ({})", family.name.part(), family.name),
+                Some(hz) => format!("impacts of {} at {hz:.1} Hz ({})", family.name.part(), family.name),
+                None => format!("impacts of {} ({})", family.name.part(), family.name),
             })
             .collect();
         (!families.is_empty()).then(|| families.join(" and "))
@@ -125,7 +125,7 @@ fn has_facet_lines(summary: &Summary) -> bool {
 /// What makes the lines of a healthy bearing look like those of a defect.
 fn likely_cause(summary: &Summary, in_machine: bool) -> &'static str {
     if has_facet_lines(summary) {
-        "its surfaces are chords, whose corners knock; `contact.surface: arc` has none"
+        "its surfaces are chords, whose corners strike; `contact.surface: arc` has none"
     } else if in_machine {
         "rolling elements come under the load and leave it at that rate, and the noise of the machine does not \
          cover them"

@@ -22,7 +22,7 @@ pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_
     let all: Vec<String> =
         of_defect.into_iter().chain(scene.written.defects.iter().map(DeviationScene::spoken)).collect();
     let defect = match all.len() {
-        0 => "sound raceways".to_owned(),
+        0 => "healthy raceways".to_owned(),
         1..=3 => all.join(", "),
         more => format!("{} and {} more deviations", all[..2].join(", "), more - 2),
     };

@@ -129,7 +129,7 @@ fn loads(summary: &Summary, over_spall: bool) -> Markup {
         ("Housing on outer ring along the load, mean", kilo(load.seat_mean_n)),
         ("Largest roller force, mean over a facet period", kilo(load.max_roller_n)),
         ("Largest roller force, single sample", kilo(load.max_roller_peak_n)),
-        ("Static, rigid rings, sound raceway", kilo(load.static_max_roller_n)),
+        ("Static, rigid rings, healthy raceway", kilo(load.static_max_roller_n)),
         (LEFT_OUT, kilo(load.static_max_roller_defect_n)),
         ("Rollers loaded at rest", load.static_loaded_rollers.map(|n| n.to_string())),
     ];

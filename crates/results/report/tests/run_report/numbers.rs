@@ -189,7 +189,7 @@ fn analytic_rollers_carry_what_a_rotating_load_does_over_the_record() {
     let folder = Scratch::new("rotating");
     let scene = Scene::default()
         .with_overrides(&["operation.rotating_load=(force_n: 10000, angle_deg: 270)"])
-        .expect("a sound scene");
+        .expect("a valid scene");
     synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1.0);
     let load = report::write(folder.path()).expect("a report").load;
     let wanted = SUPPORT_N + 10e3 * std::f64::consts::FRAC_2_PI;

@@ -111,7 +111,7 @@ fn behaves_a_quiet_sound_bearing_has_digits_and_no_words_on_defects() {
         housing: HousingScene::Rigid(RigidHousingScene::default()),
         ..Scene::default()
     };
-    let scene = scene.with_overrides(&["operation.load_angle_deg=0"]).expect("a sound scene");
+    let scene = scene.with_overrides(&["operation.load_angle_deg=0"]).expect("a valid scene");
     synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1e-3);
     let summary = report::write(folder.path()).expect("a report");
     let page = read(folder.path(), "report.html");

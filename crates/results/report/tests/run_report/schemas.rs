@@ -47,13 +47,13 @@ pub(crate) fn agree(schema: &Value, value: &Value, path: &str) -> Result<(), Str
     items.iter().enumerate().try_for_each(|(k, item)| agree(each(k), item, &format!("{path}[{k}]")))
 }
 
-/// An outer raceway of a 6205 that knocks at 1200 rpm, or a channel that is clipped at half of its peak.
+/// An outer raceway of a 6205 that strikes at 1200 rpm, or a channel that is clipped at half of its peak.
 fn record(rail: f64) -> Channel {
     let mut noise = Noise::new(7);
     let samples = (0..65_536).map(|n| {
         let since = (f64::from(n) / 12_800.0).rem_euclid(1.0 / 71.7);
-        let knock = (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin();
-        (noise.uniform() + 2.0 * knock).clamp(-rail, rail)
+        let impact = (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin();
+        (noise.uniform() + 2.0 * impact).clamp(-rail, rail)
     });
     Channel::held("housing", samples.collect()).in_unit(Some("g".to_owned()))
 }

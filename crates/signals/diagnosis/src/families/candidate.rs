@@ -1,11 +1,11 @@
-//! Where a family stands highest of all bands, and how deep its knocks are there.
+//! Where a family stands highest of all bands, and how deep its impacts are there.
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 use stribeck_theory::kinematics::off_multiple;
 
 use crate::Defect;
 use crate::families::family::{Family, Reason};
-use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::limits::{ALPHA, IMPACT, decibel};
 use crate::families::machine_lines::OwnLines;
 use crate::families::unexplained::UnexplainedComb;
 use crate::families::unrelated::SLIP;
@@ -101,11 +101,11 @@ pub(crate) fn search(
     // What stands in the rest of the place, the flank of a family that is a little off the shaft's multiple
     // among it, is judged as any other.
     let searched = found.len() as f64;
-    let knocks = comb.p_value * searched < ALPHA && bands[n].0.depth(comb.fundamental_hz) >= KNOCK;
-    if let Some(hidden) = hidden(bands, own, (low, high), comb.height).filter(|_| !knocks) {
+    let strikes = comb.p_value * searched < ALPHA && bands[n].0.depth(comb.fundamental_hz) >= IMPACT;
+    if let Some(hidden) = hidden(bands, own, (low, high), comb.height).filter(|_| !strikes) {
         let family = Family { undecided: true, ..expected };
         return Candidate { family, standing: None, found }.because(format!(
-            "undecided: something knocks at {:.2} Hz, {:.0} times the shaft, where its place is, too; a measured \
+            "undecided: something strikes at {:.2} Hz, {:.0} times the shaft, where its place is, too; a measured \
              speed or a longer record would tell them apart",
             hidden.fundamental_hz,
             hidden.fundamental_hz / own.shaft_hz
@@ -114,7 +114,7 @@ pub(crate) fn search(
     Candidate { family: expected, standing: None, found }.standing_in(n, comb, comb_hz, bands)
 }
 
-/// A comb of the shaft within the place of a family that knocks and stands higher than all that are not the
+/// A comb of the shaft within the place of a family that strikes and stands higher than all that are not the
 /// machine's own there.
 fn hidden(
     bands: &[(&BandEnvelope, Whitened)],
@@ -124,9 +124,9 @@ fn hidden(
 ) -> Option<Comb> {
     let of = |(band, spectrum): &(&BandEnvelope, Whitened)| {
         let comb = CombTest::FOUR_OF_FIVE.search(spectrum, low, high).ok()?;
-        let knocks = band.depth(comb.fundamental_hz) >= KNOCK;
+        let strikes = band.depth(comb.fundamental_hz) >= IMPACT;
         let is_its = own.is_of_shaft(comb.fundamental_hz) && comb.height > height;
-        (is_its && knocks && comb.p_value * (bands.len() as f64) < ALPHA).then_some(comb)
+        (is_its && strikes && comb.p_value * (bands.len() as f64) < ALPHA).then_some(comb)
     };
     bands.iter().filter_map(of).max_by(|a, b| a.height.total_cmp(&b.height))
 }
@@ -219,7 +219,7 @@ fn depth_of_comb(band: &BandEnvelope, spectrum: &Whitened, comb_hz: f64) -> f64 
     (1..=(LINES_TO_HZ / comb_hz) as u32).map(above_background).sum::<f64>().sqrt()
 }
 
-/// Depth of the modulation at a comb; the power of an element's knocks is in the sidebands of the cage, too.
+/// Depth of the modulation at a comb; the power of an element's impacts is in the sidebands of the cage, too.
 fn depth_of(name: Defect, (band, spectrum): (&BandEnvelope, &Whitened), comb_hz: f64, cage_hz: f64) -> f64 {
     const BESIDE: i32 = 2;
     if name != Defect::Bsf {

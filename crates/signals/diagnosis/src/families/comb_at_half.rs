@@ -1,4 +1,4 @@
-//! A comb at half the frequency of a raceway: the raceway's lines are its even ones, and the source knocks
+//! A comb at half the frequency of a raceway: the raceway's lines are its even ones, and the source strikes
 //! half as often as elements pass.
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
@@ -7,7 +7,7 @@ use crate::families::limits::decibel;
 use crate::families::machine_lines::OwnLines;
 use crate::families::unexplained::Unexplained;
 
-/// An odd line of a comb at half the frequency over the even ones beside it, in power. Knocks of 1 + m and
+/// An odd line of a comb at half the frequency over the even ones beside it, in power. Impacts of 1 + m and
 /// 1 − m in turn have (2m/(1 + m²))²; from 0.5 on the weaker ones have two fifths of the others' amplitude at
 /// most.
 const AS_HIGH: f64 = 0.5;

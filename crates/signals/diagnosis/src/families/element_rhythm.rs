@@ -1,24 +1,24 @@
-//! Knocks of a rolling element that lose their phase with every turn of the cage.
+//! Impacts of a rolling element that lose their phase with every turn of the cage.
 //!
 //! Beyond the load little drives the spin of an element, so it comes back under the load at any angle: its
 //! family has no lines. The record shows the cage's rhythm, and within a passage the time of half a spin
-//! between two knocks (THEORY §7.9).
+//! between two impacts (THEORY §7.9).
 
 use stribeck_dsp::{Autocorrelation, BandEnvelope};
 
 use crate::families::unrelated::{SLIP, unrelated_hz};
 
-/// Knocks of a passage after the first one that must be periodic.
+/// Impacts of a passage after the first one that must be periodic.
 const REPEATS: usize = 3;
 /// Steps of the search over the range of slip.
 const STEPS: usize = 16;
 
-/// The frequency within slip of `knocks_hz` at which the envelope repeats most, if it does so more than at
+/// The frequency within slip of `impacts_hz` at which the envelope repeats most, if it does so more than at
 /// any unrelated one [Hz].
-pub(crate) fn repeating_hz(band: &BandEnvelope, knocks_hz: f64) -> Option<f64> {
+pub(crate) fn repeating_hz(band: &BandEnvelope, impacts_hz: f64) -> Option<f64> {
     let correlation = band.autocorrelation().ok()?;
-    let (height, hz) = highest(&correlation, knocks_hz)?;
-    let mut others = unrelated_hz(knocks_hz).filter_map(|hz| Some(highest(&correlation, hz)?.0)).peekable();
+    let (height, hz) = highest(&correlation, impacts_hz)?;
+    let mut others = unrelated_hz(impacts_hz).filter_map(|hz| Some(highest(&correlation, hz)?.0)).peekable();
     (others.peek().is_some() && height > 0.0 && others.all(|other| other < height)).then_some(hz)
 }
 

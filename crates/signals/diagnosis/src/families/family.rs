@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::Defect;
 use crate::families::controls::MOST_AS_HIGH;
-use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::limits::{ALPHA, IMPACT, decibel};
 use crate::families::power::Limit;
 use crate::families::unexplained::UnexplainedComb;
 use crate::families::unrelated::UNRELATED_SPACINGS;
@@ -39,7 +39,7 @@ quantities! {
         /// Part of unrelated combs in the same spectrum that stand as high.
         pub rank: Option<f64>,
         /// How deep the power is modulated in the band where it is deepest, of those in which the family stands:
-        /// 0 not at all, 1 to zero, 2 short knocks. That of a rolling element counts its sidebands of the cage.
+        /// 0 not at all, 1 to zero, 2 short impacts. That of a rolling element counts its sidebands of the cage.
         pub depth: Option<f64>,
         /// That band [Hz].
         pub depth_band_hz: Option<(f64, f64)>,
@@ -47,7 +47,7 @@ quantities! {
         pub band_hz: Option<(f64, f64)>,
         /// The weakest impacts at its frequency that the record would have shown; `null` where it could show none.
         pub limit: Option<Limit>,
-        /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+        /// Whether its impacts keep their phase while an element passes under the load only, so that it has no
         /// lines ([`BandEnvelope::autocorrelation`]).
         pub in_passages: bool,
         /// The family that stands higher, over whose period all numbers of this one are taken
@@ -192,7 +192,7 @@ impl Family {
         Self { p_value: by_depth.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
     }
 
-    /// The same where the cage modulates its knocks, as it does those of a spot on an element: of the families
+    /// The same where the cage modulates its impacts, as it does those of a spot on an element: of the families
     /// of healthy bearings that are as deep one in nine has more sidebands at the cage's spacing than at eight
     /// unrelated ones.
     pub(crate) fn beside_the_cage(self) -> Self {
@@ -212,8 +212,8 @@ impl Family {
         }
     }
 
-    /// Whether it is more than noise and modulated as deeply as by knocks, whatever their cause.
-    pub fn knocks(&self) -> bool {
-        self.noise_p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)
+    /// Whether it is more than noise and modulated as deeply as by impacts, whatever their cause.
+    pub fn has_impacts(&self) -> bool {
+        self.noise_p_value < ALPHA && self.depth.is_some_and(|depth| depth >= IMPACT)
     }
 }

@@ -1,6 +1,6 @@
 //! Does a family stand in both halves of a record?
 //!
-//! A defect knocks as long as the machine turns. Three lines that stand in one half only are chance, or
+//! A defect impacts as long as the machine turns. Three lines that stand in one half only are chance, or
 //! something that passed.
 
 use stribeck_dsp::{BandEnvelopes, CombTest, Whitened};

@@ -1,4 +1,4 @@
-//! Lines that a sound machine has, whatever its bearing: multiples of its shafts, of a cage that stands, and
+//! Lines that a healthy machine has, whatever its bearing: multiples of its shafts, of a cage that stands, and
 //! of meshes of gears with their sidebands.
 
 /// Multiples of the shaft and of the cage.

@@ -13,7 +13,7 @@ use stribeck_dsp::{BandEnvelope, CombTest, Whitened};
 use crate::families::candidate::{LINES_TO_HZ, SLOW_HZ};
 use crate::families::controls::controls;
 use crate::families::family::{Family, SOUND_DEPTHS};
-use crate::families::limits::{ALPHA, KNOCK};
+use crate::families::limits::{ALPHA, IMPACT};
 use crate::families::machine_lines::OwnLines;
 use crate::families::unrelated::SLIP;
 use crate::record::pass::Record;
@@ -116,7 +116,7 @@ fn least_added(
 ) -> Option<f64> {
     let CombTest { harmonics, needed } = CombTest::FOUR_OF_FIVE;
     let swing = |n: usize| 1.0 / (1.0 + (PI * n as f64 * comb_hz * ring_s).powi(2)).sqrt();
-    let depth = KNOCK.max(-ALPHA.ln() / SOUND_DEPTHS);
+    let depth = IMPACT.max(-ALPHA.ln() / SOUND_DEPTHS);
     let lines = if comb_hz < SLOW_HZ { (LINES_TO_HZ / comb_hz) as usize } else { 1 };
     let of_lines = (1..=lines).map(|n| swing(n).powi(2)).sum::<f64>().sqrt();
     let by_depth = depth / (2.0 * of_lines - depth);

@@ -4,7 +4,7 @@ use stribeck_dsp::{BandEnvelope, Whitened};
 
 use crate::families::controls::MOST_AS_HIGH;
 use crate::families::family::{Family, Reason, SOUND_DEPTHS};
-use crate::families::limits::{ALPHA, KNOCK, KNOCK_OF_ELEMENT};
+use crate::families::limits::{ALPHA, IMPACT, IMPACT_OF_ELEMENT};
 use crate::families::sidebands::is_modulated;
 use crate::families::sound::BesideSound;
 use crate::families::unexplained::{Unexplained, UnexplainedComb};
@@ -66,12 +66,12 @@ pub(crate) fn claimed_first(families: &[Family]) -> Option<(usize, f64)> {
     Some((at, families[at].name.shocks_per_period() * families[at].measured_hz?))
 }
 
-/// The family that knocks and stands highest, but for the cage's and those whose lines are another's.
+/// The family that strikes and stands highest, but for the cage's and those whose lines are another's.
 pub(crate) fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
-    let knocking = families
+    let striking = families
         .enumerate()
-        .filter(|(_, f)| f.name != Defect::Ftf && f.reason == Reason::Undecided && f.knocks());
-    knocking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
+        .filter(|(_, f)| f.name != Defect::Ftf && f.reason == Reason::Undecided && f.has_impacts());
+    striking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
 }
 
 /// A family of the inner raceway and twice the spin of an element may be a turn of the shaft apart, and one is
@@ -84,7 +84,7 @@ pub(crate) fn without_mirrored(
     bands: &[(&BandEnvelope, Whitened)],
 ) -> Vec<Family> {
     let comb_of = |name: Defect| {
-        let family = families.iter().find(|family| family.name == name && family.knocks())?;
+        let family = families.iter().find(|family| family.name == name && family.has_impacts())?;
         Some((family, name.shocks_per_period() * family.measured_hz?))
     };
     let (Some((inner, inner_hz)), Some((element, element_hz))) =
@@ -166,7 +166,7 @@ pub(crate) struct Around<'a> {
     pub(crate) width_hz: f64,
 }
 
-/// Largest probability of a false alarm at which a family is claimed while something else knocks louder.
+/// Largest probability of a false alarm at which a family is claimed while something else strikes louder.
 const BESIDE_OTHERS: f64 = 1e-4;
 /// Lines within which two combs, each by its own place, are one.
 const SAME_LINES: f64 = 2.0;
@@ -176,7 +176,7 @@ const SIDEBANDS: i32 = 4;
 
 impl Around<'_> {
     /// The comb that is no family's and may be what the family's lines are: a higher one that stands in the same
-    /// band, too, or accounts for them from another one. Elements and cages modulate whatever knocks, so for
+    /// band, too, or accounts for them from another one. Elements and cages modulate whatever strikes, so for
     /// their families any band counts.
     fn instead_of(&self, family: &Family) -> Option<Unexplained> {
         let is_raceway = matches!(family.name, Defect::Bpfo | Defect::Bpfi);
@@ -204,11 +204,11 @@ impl Around<'_> {
 pub(crate) struct Case<'a> {
     /// The combs that are no family's.
     around: Around<'a>,
-    /// The family that stands farthest above unrelated combs, beside sound records of the machine.
+    /// The family that stands farthest above unrelated combs, beside healthy records of the machine.
     sound: Option<BesideSound>,
-    /// Whether the cage modulates the knocks of a rolling element.
+    /// Whether the cage modulates the impacts of a rolling element.
     pub(crate) modulated: bool,
-    /// Height of the family that knocks and stands highest [dB]; −∞ without one.
+    /// Height of the family that strikes and stands highest [dB]; −∞ without one.
     first_db: f64,
 }
 
@@ -224,7 +224,7 @@ const RULES: [(&str, Rule); 10] = [
     ("depth in healthy bearings", sound_bearings_show_as_much),
     ("rolling", no_cage_rolls_so_fast),
     ("unexplained comb", unexplained_comb_stands_higher),
-    ("louder source in another band", something_else_knocks_louder),
+    ("louder source in another band", something_else_strikes_louder),
     ("cage in an element", element_without_the_cage),
     ("share of the cage", cage_shares_in_a_family),
     ("higher family", another_family_stands_higher),
@@ -244,13 +244,13 @@ fn unrelated_combs_stand_as_high(family: &Family, _: &Case<'_>) -> Option<String
 
 fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<String> {
     let depth = family.depth.unwrap_or(0.0);
-    let knock = if family.name == Defect::Bsf && case.modulated { KNOCK_OF_ELEMENT } else { KNOCK };
-    (depth < knock && case.beyond_sound(family).is_none()).then(|| {
+    let impact = if family.name == Defect::Bsf && case.modulated { IMPACT_OF_ELEMENT } else { IMPACT };
+    (depth < impact && case.beyond_sound(family).is_none()).then(|| {
         format!(
             "it is there, but the power of its band varies by {:.0} % of its mean, where impacts vary it by {:.0} %; \
              families of healthy bearings reach that with a probability of {}",
             100.0 * depth,
-            100.0 * knock,
+            100.0 * impact,
             chance((-SOUND_DEPTHS * depth).exp())
         )
     })
@@ -293,12 +293,12 @@ fn unexplained_comb_stands_higher(family: &Family, case: &Case<'_>) -> Option<St
 }
 
 /// A record with a source of its own in other bands asks for more certainty in the family's.
-fn something_else_knocks_louder(family: &Family, case: &Case<'_>) -> Option<String> {
+fn something_else_strikes_louder(family: &Family, case: &Case<'_>) -> Option<String> {
     let mut louder = case.around.foreign.iter().map(|other| other.report(case.around.shaft_hz));
     let other = louder.find(|other| other.height_db > family.height_db)?;
     (family.p_value >= BESIDE_OTHERS && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but something that is no family of this bearing knocks louder in another band, at \
+            "it is there, but something that is no family of this bearing impacts louder in another band, at \
              {:.3} times the shaft, and healthy bearings show as much with a probability of {}",
             other.order,
             probability(family.p_value)
@@ -352,7 +352,7 @@ pub(crate) fn decide(
 }
 
 impl Case<'_> {
-    /// What sound records of the machine say of a family, where it stands beyond them: they know this machine,
+    /// What healthy records of the machine say of a family, where it stands beyond them: they know this machine,
     /// and take the place of what healthy bearings of other rigs show.
     fn beyond_sound(&self, family: &Family) -> Option<BesideSound> {
         self.sound.filter(|sound| sound.name == family.name && sound.is_beyond())
@@ -361,7 +361,9 @@ impl Case<'_> {
 
 /// A family that no rule refuses.
 fn claimed(family: Family, case: &Case<'_>) -> Family {
-    if let Some(sound) = case.beyond_sound(&family).filter(|_| family.p_value >= ALPHA || !family.knocks()) {
+    if let Some(sound) =
+        case.beyond_sound(&family).filter(|_| family.p_value >= ALPHA || !family.has_impacts())
+    {
         return beyond_sound_records(family, &sound);
     }
     let is_cage = family.name == Defect::Ftf;
@@ -385,7 +387,7 @@ fn claimed(family: Family, case: &Case<'_>) -> Family {
 /// A family that is claimed by what the machine showed when it was sound.
 fn beyond_sound_records(family: Family, sound: &BesideSound) -> Family {
     let why = format!(
-        "{} harmonics stand, {:.1} dB above combs at other spacings, where the highest of {} records of the sound machine \
+        "{} harmonics stand, {:.1} dB above combs at other spacings, where the highest of {} records of the healthy machine \
          has {:.1} dB; by their scatter such a record has as much with a probability of {}",
         family.harmonics,
         sound.score_db,
@@ -400,8 +402,8 @@ fn beyond_sound_records(family: Family, sound: &BesideSound) -> Family {
     Family { claimed: true, p_value, not_told_apart_from, reason: Reason::Decided(why), ..family }
 }
 
-/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a
-/// rolling element that knocks twice a spin, by the whole range or by the band in which the cage stands
+/// Where something strikes once a turn of the cage and no family of a raceway stands at its place, names a
+/// rolling element that strikes twice a spin, by the whole range or by the band in which the cage stands
 /// highest.
 pub(crate) fn with_element(families: Vec<Family>, bands: &[BandEnvelope]) -> Vec<Family> {
     let Some((band_hz, hz)) = element_by_the_cage(&families, bands) else { return families };
@@ -412,7 +414,7 @@ pub(crate) fn with_element(families: Vec<Family>, bands: &[BandEnvelope]) -> Vec
             in_passages: true,
             claimed: true,
             reason: Reason::Decided(format!(
-                "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an \
+                "something strikes once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an \
                  element, which no unrelated rhythm does as much; from turn to turn it loses its phase, so that \
                  it has no lines"
             )),
@@ -427,18 +429,18 @@ pub(crate) fn with_element(families: Vec<Family>, bands: &[BandEnvelope]) -> Vec
     families.into_iter().map(named).collect()
 }
 
-/// The band [Hz] and the rhythm [Hz] of an element that knocks twice a spin, once a turn of the cage.
+/// The band [Hz] and the rhythm [Hz] of an element that strikes twice a spin, once a turn of the cage.
 fn element_by_the_cage(families: &[Family], bands: &[BandEnvelope]) -> Option<((f64, f64), f64)> {
     let of = |name: Defect| families.iter().find(|family| family.name == name);
     let (element, cage) = (of(Defect::Bsf)?, of(Defect::Ftf)?);
     // A spot on a rolling element meets both raceways in a turn.
-    let knocks_hz = 2.0 * element.expected_hz;
-    let is_taken = families.iter().any(|f| f.is_there() && is_the_same(f.expected_hz, knocks_hz));
+    let impacts_hz = 2.0 * element.expected_hz;
+    let is_taken = families.iter().any(|f| f.is_there() && is_the_same(f.expected_hz, impacts_hz));
     (cage.claimed && !is_taken).then_some(())?;
     let loudest = |band: &&BandEnvelope| cage.band_hz == Some((band.low_hz, band.high_hz));
     let asked = [bands.first(), bands.iter().find(loudest)];
     asked.into_iter().flatten().find_map(|band| {
-        let hz = element_rhythm::repeating_hz(band, knocks_hz)?;
+        let hz = element_rhythm::repeating_hz(band, impacts_hz)?;
         Some(((band.low_hz, band.high_hz), hz))
     })
 }

@@ -9,13 +9,13 @@ use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use crate::families::controls::rank;
 use crate::families::family::Family;
-use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::limits::{ALPHA, IMPACT, decibel};
 use crate::families::sidebands::is_modulated;
 use crate::families::unrelated::SLIP;
 use crate::families::verdict::FirstDefect;
 use crate::{Defect, Reason};
 
-/// Where a family knocks most over the period of the first.
+/// Where a family has the strongest impacts over the period of the first.
 struct Beside {
     at: usize,
     comb: Comb,
@@ -107,15 +107,15 @@ fn beside(
             is_modulated(spectrum, comb.fundamental_hz, first.cage_hz)
                 && !first.has_sideband(comb.fundamental_hz)
         }
-        // Sound elements pass as well, and may dominate once the louder family is removed: a second defect
-        // must therefore knock in the whole range.
+        // Healthy elements pass as well, and may dominate once the louder family is removed: a second defect
+        // must therefore impact in the whole range.
         Defect::Bpfo => {
-            let loud = whole.is_some_and(|whole| whole.depth(comb.fundamental_hz) >= KNOCK);
+            let loud = whole.is_some_and(|whole| whole.depth(comb.fundamental_hz) >= IMPACT);
             family.is_there() && loud && !first.takes(comb.fundamental_hz)
         }
         Defect::Bpfi | Defect::Ftf => !first.takes(comb.fundamental_hz),
     };
-    let passes = depth >= KNOCK
+    let passes = depth >= IMPACT
         && own
         && remains < comb.height
         && rank(&comb, comb_hz, spectrum, Some(first.comb_hz), None) == Some(0.0);

@@ -1,5 +1,5 @@
 //! Sidebands of a family at the distance of the cage's frequency: they distinguish a spot on a rolling
-//! element, which knocks only while the cage carries it through the load zone.
+//! element, which strikes only while the cage carries it through the load zone.
 
 use stribeck_dsp::{BandEnvelope, Whitened};
 

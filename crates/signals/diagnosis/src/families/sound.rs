@@ -10,23 +10,23 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use crate::families::family::Family;
 use crate::{Defect, Reason};
 
-/// Fewest sound records by which a family is claimed: one more exceeds all of seven once in eight.
+/// Fewest healthy records by which a family is claimed: one more exceeds all of seven once in eight.
 pub const LEAST_SOUND: usize = 7;
 /// Fewer, two at least, claim one by its distance from the highest of them [dB]: of 24 healthy records of IMS beside
 /// two of the same channel none stands more than 1.5 dB above both.
 pub(crate) const LEAST_FEW: usize = 2;
 const ABOVE_FEW_DB: f64 = 3.1;
-/// Largest probability that a further sound record has as high a score, with which a family is claimed.
+/// Largest probability that a further healthy record has as high a score, with which a family is claimed.
 pub(crate) const BEYOND_SOUND: f64 = 0.01;
 
-/// A score beside those of sound records.
+/// A score beside those of healthy records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BesideSound {
     /// The family that stands farthest above unrelated combs.
     pub(crate) name: Defect,
     /// By how much [dB].
     pub(crate) score_db: f64,
-    /// Sound records, and those of them with as high a score.
+    /// Healthy records, and those of them with as high a score.
     pub(crate) records: usize,
     pub(crate) as_high: usize,
     /// The highest of their scores [dB].
@@ -44,7 +44,7 @@ pub(crate) fn farthest(families: &[Family]) -> Option<(Defect, f64)> {
 }
 
 impl BesideSound {
-    /// Beside the scores of sound records [dB]; `None` without any.
+    /// Beside the scores of healthy records [dB]; `None` without any.
     pub(crate) fn of(families: &[Family], sound_db: &[f64]) -> Option<Self> {
         let (name, score_db) = farthest(families)?;
         let records = sound_db.len();
@@ -67,7 +67,7 @@ impl BesideSound {
         })
     }
 
-    /// Whether it is beyond what sound records of the machine show.
+    /// Whether it is beyond what healthy records of the machine show.
     pub(crate) fn is_beyond(&self) -> bool {
         self.is_above_few() || self.records >= LEAST_SOUND && self.as_high == 0 && self.p_value < BEYOND_SOUND
     }
@@ -78,7 +78,7 @@ impl BesideSound {
         few && self.score_db - self.highest_db >= ABOVE_FEW_DB
     }
 
-    /// How many sound records show as much, in words.
+    /// How many healthy records show as much, in words.
     pub(crate) fn note(&self) -> String {
         let Self { name, score_db, records, as_high, .. } = self;
         let few = format!("; at least {LEAST_FEW} of them enter the verdict");

@@ -1,4 +1,4 @@
-//! A comb that knocks and is no family's: slip, speed or bearing differ from those given.
+//! A comb that strikes and is no family's: slip, speed or bearing differ from those given.
 //!
 //! A claim rests on the place of a comb. Where a comb that belongs to nothing in the bearing stands higher
 //! than all that do, the places are wrong, and a lower comb at one of them is chance or a sideband.
@@ -6,7 +6,7 @@
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
-use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::limits::{ALPHA, IMPACT, decibel};
 use crate::families::machine_lines::OwnLines;
 use crate::quantities;
 
@@ -66,7 +66,7 @@ const FAR_HIGHER: f64 = 4.0;
 pub(crate) const NAMED: f64 = 1e-9;
 
 /// The highest comb of each band that is no multiple of the shaft or the cage, no multiple or fraction of a
-/// family, no sideband of a higher one, is far beyond noise, and knocks. `of_others` says whether a frequency
+/// family, no sideband of a higher one, is far beyond noise, and strikes. `of_others` says whether a frequency
 /// [Hz] is another bearing's.
 pub(crate) fn of_each_band(
     bands: &[(&BandEnvelope, Whitened)],
@@ -95,12 +95,12 @@ pub(crate) fn of_each_band(
         }
         highest.extend(best.map(|comb| (n, comb)));
     }
-    let knocking = highest.into_iter().map(|(band, comb)| {
+    let striking = highest.into_iter().map(|(band, comb)| {
         let (of, _) = &bands[band];
         let (depth, band_hz) = (of.depth(comb.fundamental_hz), (of.low_hz, of.high_hz));
         UnexplainedComb { band, band_hz, comb, depth, searched, stands_in_hz: Vec::new() }
     });
-    let named = knocking.filter(|found| found.comb.p_value * searched < NAMED && found.depth >= KNOCK);
+    let named = striking.filter(|found| found.comb.p_value * searched < NAMED && found.depth >= IMPACT);
     named
         .map(|found| UnexplainedComb { stands_in_hz: standing_in(found.comb.fundamental_hz, bands), ..found })
         .collect()

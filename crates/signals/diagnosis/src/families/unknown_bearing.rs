@@ -1,4 +1,4 @@
-//! What knocks in a record whose bearing nobody named, and how many rolling elements would make it.
+//! What strikes in a record whose bearing nobody named, and how many rolling elements would make it.
 
 use stribeck_dsp::{BandEnvelope, CombTest, Whitened};
 
@@ -12,8 +12,8 @@ const HIGHEST: f64 = 14.0;
 /// Part by which a whole number of elements may be missed.
 const WHOLE: f64 = 0.02;
 
-/// The comb that knocks highest, as a raceway's of a bearing with so many elements, and how many they are where
-/// the cage stands, too; `None` where nothing knocks but the machine's own lines.
+/// The comb that strikes highest, as a raceway's of a bearing with so many elements, and how many they are where
+/// the cage stands, too; `None` where nothing strikes but the machine's own lines.
 pub(crate) fn sentence(bands: &[(&BandEnvelope, Whitened)], own: &OwnLines) -> Option<String> {
     let shaft_hz = own.shaft_hz;
     let combs = unexplained::of_each_band(bands, own, f64::NAN, HIGHEST * shaft_hz, &[], &|_| false);
@@ -35,7 +35,7 @@ pub(crate) fn sentence(bands: &[(&BandEnvelope, Whitened)], own: &OwnLines) -> O
     let hz = whole.map_or(highest.comb.fundamental_hz, |comb| comb.fundamental_hz);
     let order = hz / shaft_hz;
     let fitting = bearings(order, cage.map(|comb| comb.fundamental_hz / shaft_hz));
-    Some(format!("Something knocks at {hz:.2} Hz, {order:.3} times the shaft: {fitting}"))
+    Some(format!("Something strikes at {hz:.2} Hz, {order:.3} times the shaft: {fitting}"))
 }
 
 /// The bearings whose raceway passes so often in a turn of the shaft; `cage` has the turns of the cage.

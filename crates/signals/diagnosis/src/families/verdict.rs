@@ -6,7 +6,7 @@
 //!    of a false alarm under noise of the record's own colour.
 //! 2. Is it more than the record's other lines? Machines are full of lines; the family must stand higher than
 //!    combs of unrelated fundamentals in the same spectrum.
-//! 3. Is it a knock? Healthy bearings modulate noise a little as their elements pass under the load. The power
+//! 3. Is it an impact? Healthy bearings modulate noise a little as their elements pass under the load. The power
 //!    of a band must swing by 60 % of its mean.
 //!
 //! The highest that passes is claimed; `second.rs` looks for a second defect beside it. Multiples of the
@@ -47,9 +47,9 @@ pub(crate) struct Candidates {
     rolling: Option<(f64, f64)>,
     /// How far the family that stands farthest above unrelated combs does so [dB].
     score_db: Option<f64>,
-    /// The same beside sound records of the machine.
+    /// The same beside healthy records of the machine.
     sound: Option<BesideSound>,
-    /// Whether the cage modulates the knocks of a rolling element.
+    /// Whether the cage modulates the impacts of a rolling element.
     modulated: bool,
     notes: Vec<String>,
     /// Turns of the shaft and of the cage [Hz].
@@ -67,7 +67,7 @@ pub(crate) struct Decided {
     pub(crate) first: Option<FirstDefect>,
     /// How far the family that stands farthest above unrelated combs does so [dB].
     pub(crate) score_db: Option<f64>,
-    /// The same beside sound records of the machine.
+    /// The same beside healthy records of the machine.
     pub(crate) sound: Option<BesideSound>,
     /// A comb that is no family's and stands higher.
     pub(crate) unexplained: Option<Unexplained>,
@@ -116,11 +116,11 @@ impl Candidates {
         by_shaft: bool,
     ) -> Result<Self, String> {
         let (orders, shaft_hz) = orders_and_speed(machine).map_err(|why| {
-            let knocks = machine.speed_rpm.filter(|_| machine.bearing.is_none()).and_then(|rpm| {
+            let impacts = machine.speed_rpm.filter(|_| machine.bearing.is_none()).and_then(|rpm| {
                 let own = own_lines(machine, rpm / 60.0, OWN_LINES / record.segment_s());
                 unknown_bearing::sentence(&whitened(record), &own)
             });
-            [Some(why), knocks].into_iter().flatten().collect::<Vec<_>>().join(". ")
+            [Some(why), impacts].into_iter().flatten().collect::<Vec<_>>().join(". ")
         })?;
         let (record_s, segment_s) = (record.duration_s(), record.segment_s());
         let whitened = whitened(record);
@@ -376,7 +376,7 @@ fn above_noise(candidates: &[Candidate]) -> Vec<AboveNoise> {
         .collect()
 }
 
-/// The comb at half the frequency of a raceway, where one stands: then the raceway is not what knocks.
+/// The comb at half the frequency of a raceway, where one stands: then the raceway is not what strikes.
 fn comb_at_half_of(
     candidate: &Candidate,
     whitened: &[(&BandEnvelope, Whitened)],
@@ -401,7 +401,7 @@ fn beside_controls(
         Some(half) => family.refused(
             "half the rate",
             format!(
-                "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
+                "its lines are every second one of a comb at {:.2} Hz: what strikes comes half as often as elements \
                  pass",
                 half.hz
             ),

@@ -1,7 +1,7 @@
 //! Alarm bands: the levels of warning and alarm.
 //!
 //! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from
-//! records of the machine in its sound state.
+//! records of the machine in its healthy state.
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -199,7 +199,7 @@ impl Limit {
     }
 }
 
-/// Level of a family [dB]. Sound records have one, too: that of the noise at the family's lines, by whose
+/// Level of a family [dB]. Healthy records have one, too: that of the noise at the family's lines, by whose
 /// scatter a limit is set.
 fn level_db(findings: &MeasuredFindings, defect: Defect) -> Option<f64> {
     let family = findings.families.iter().find(|f| f.name == defect)?;

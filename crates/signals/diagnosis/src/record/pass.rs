@@ -22,7 +22,7 @@ const DENSITY_SEGMENT: usize = 1 << 13;
 /// Shortest record that is analysed [samples].
 const LEAST: usize = 1024;
 
-/// A sound record: everything that one pass over its samples yields.
+/// A valid record: everything that one pass over its samples yields.
 pub(crate) struct Record {
     /// Samples a second [Hz].
     pub(crate) rate_hz: f64,
@@ -198,7 +198,7 @@ impl Pass {
     fn refuse(&self, channel: &Channel, notes: &[String]) -> Result<(), Error> {
         if self.envelopes.segments() == 0 {
             return Err(Error::NoSignal(format!(
-                "channel `{}` has no run of {} numbers: {}. Cut the record to its sound part",
+                "channel `{}` has no run of {} numbers: {}. Cut the record to its valid part",
                 channel.name,
                 self.segment,
                 notes.join("; ")

@@ -76,7 +76,7 @@ quantities! {
 }
 
 impl Kind {
-    /// Whether levels, knocks and lines of such samples are no longer those of the machine.
+    /// Whether levels, impacts and lines of such samples are no longer those of the machine.
     pub fn spoils_verdicts(self) -> bool {
         !matches!(self, Self::Drift | Self::Hum | Self::Aliased)
     }
@@ -162,7 +162,7 @@ pub(crate) fn hum_of(kept: &[f64], rate_hz: f64, speed_rpm: Option<f64>) -> Resu
 /// Fewest samples of a spectrum.
 const MINIMUM: usize = 1024;
 
-/// The sentence by which a verdict says that it rests on such samples; `None` for sound ones.
+/// The sentence by which a verdict says that it rests on such samples; `None` for valid ones.
 pub(crate) fn reservation(found: &[Quality]) -> Option<String> {
     let spoils: Vec<String> = found
         .iter()

@@ -130,7 +130,7 @@ impl Screening {
         let others = if count > 1 { format!(", and so do {} others", count - 1) } else { String::new() };
         Some(format!(
             "sample {at} ({:.4} s) is {:.6} and stands {:.0} times as far from the mean as the rest of the \
-             record{others}: it does not ring as knocks do, so the recording is at fault, and it can hide a \
+             record{others}: it does not ring as impacts do, so the recording is at fault, and it can hide a \
              defect. Put the mean of its neighbours in its place, or cut the record beside it",
             at as f64 / rate_hz,
             self.origin.unwrap_or(0.0) + mean + sign * value,
@@ -209,8 +209,8 @@ mod tests {
         screening.notes(12_800.0).join("; ")
     }
 
-    /// Noise, and knocks every `period` samples that ring at `hz` times the sample rate with a Q.
-    fn knocks(period: usize, height: f64, hz: f64, q: f64) -> Vec<f64> {
+    /// Noise, and impacts every `period` samples that ring at `hz` times the sample rate with a Q.
+    fn impacts(period: usize, height: f64, hz: f64, q: f64) -> Vec<f64> {
         let mut noise = Noise::new(6);
         (0..50_000)
             .map(|n| {
@@ -233,7 +233,7 @@ mod tests {
             (&[9, 10, 700, 40_000], 300.0, "and so do 2 others"),
         ] {
             for offset in [0.0, 2000.0] {
-                let mut samples = knocks(700, 2.0, 0.2, 20.0);
+                let mut samples = impacts(700, 2.0, 0.2, 20.0);
                 places.iter().for_each(|at| samples[*at] = value);
                 samples.iter_mut().for_each(|x| *x += offset);
                 let told = notes(&samples);
@@ -245,9 +245,9 @@ mod tests {
         }
     }
 
-    /// Knocks ring, however rare, high and short they are, and many spikes are how a machine sounds.
+    /// Impacts ring, however rare, high and short they are, and many spikes are how a machine sounds.
     #[test]
-    fn planted_knocks_are_not_called_spurious() {
+    fn planted_impacts_are_not_called_spurious() {
         for (period, hz, q) in [
             (700, 0.2, 20.0),
             (90_000, 0.2, 20.0),
@@ -256,7 +256,7 @@ mod tests {
             (4000, 0.25, 1.0),
         ] {
             for height in [3.0, 100.0, 1e5] {
-                let told = notes(&knocks(period, height, hz, q));
+                let told = notes(&impacts(period, height, hz, q));
                 assert!(told.is_empty(), "{period} {hz} {q} {height}: {told}");
             }
         }

@@ -1,7 +1,7 @@
 //! A speed that was given twice as high as the shaft turns: the number of poles of a motor, or of marks of a
 //! tachometer, is easily taken for half of what it is.
 //!
-//! Where a comb stands at half the place of a raceway, what knocks comes half as often as elements pass, if
+//! Where a comb stands at half the place of a raceway, what strikes comes half as often as elements pass, if
 //! the speed is right. Where lines of the shaft stand at half the speed too, and between its multiples, the
 //! speed is wrong and the comb is the raceway's (THEORY §7.9).
 

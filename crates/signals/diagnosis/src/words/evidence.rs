@@ -4,7 +4,7 @@ use stribeck_dsp::Envelope;
 
 use crate::Error;
 use crate::families::controls::MOST_AS_HIGH;
-use crate::families::limits::{ALPHA, KNOCK};
+use crate::families::limits::{ALPHA, IMPACT};
 use crate::families::unrelated::unrelated_hz;
 use crate::words::numbers::chance;
 use crate::{Analysis, Family, MeasuredFindings};
@@ -33,7 +33,7 @@ pub struct SynchronousMean {
     pub periods: usize,
 }
 
-/// The mean over the period of a family's knocks, and that over an unrelated period, sought and turned in the
+/// The mean over the period of a family's impacts, and that over an unrelated period, sought and turned in the
 /// same way, which shows the contribution of the search alone. From the beginning of the record, in the band
 /// in which the family stands highest. `None` for a family without a band, a record too short, or a rate too
 /// low.
@@ -112,7 +112,7 @@ pub fn what_would_change(findings: &MeasuredFindings) -> Vec<String> {
             100.0 * family.rank.unwrap_or(1.0),
             100.0 * MOST_AS_HIGH,
             100.0 * family.depth.unwrap_or(0.0),
-            100.0 * KNOCK
+            100.0 * IMPACT
         ));
         said.extend(other_speeds(findings, family));
     }
@@ -156,10 +156,10 @@ fn missing(family: &Family) -> String {
             100.0 * rank
         ));
     }
-    if let Some(depth) = family.depth.filter(|depth| *depth < KNOCK) {
+    if let Some(depth) = family.depth.filter(|depth| *depth < IMPACT) {
         lacks.push(format!(
             "power that varies by {:.0} % of its mean ({:.0} % now)",
-            100.0 * KNOCK,
+            100.0 * IMPACT,
             100.0 * depth
         ));
     }

@@ -3,7 +3,7 @@
 use crate::Defect;
 use crate::conclusion::{Conclusion, Doubt, Open, open};
 use crate::families::family::Family;
-use crate::families::limits::KNOCK;
+use crate::families::limits::IMPACT;
 use crate::families::power::Limit;
 use crate::families::unexplained::Unexplained;
 use crate::families::unrelated::SLIP;
@@ -85,7 +85,7 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, t
             match other {
                 Some(_) if f.name == Defect::Ftf => format!(
                     "a defect of the cage or of one rolling element, which the record cannot distinguish \
-                     (something knocks once a turn of the cage, {} at {hz:.2} Hz, {beside})",
+                     (something strikes once a turn of the cage, {} at {hz:.2} Hz, {beside})",
                     f.name
                 ),
                 None => format!("a defect of {} ({} at {hz:.2} Hz, {beside})", f.name.part(), f.name),
@@ -125,7 +125,8 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, t
             ),
         };
     }
-    let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
+    let highest =
+        families.iter().filter(|f| f.has_impacts()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     if let Some(highest) = highest {
         return format!(
             "The record has impacts, and does not show where: {} stands highest, but combs at other spacings \
@@ -178,7 +179,7 @@ fn why(open: &Open<'_>, unit: Option<&str>) -> String {
             would tell"
                 .to_owned()
         }
-        Open::Knocks => "something else has impacts that are stronger".to_owned(),
+        Open::Impacts => "something else has impacts that are stronger".to_owned(),
         Open::NotLookedFor(family) if family.undecided => {
             format!("it does not decide about {}, {}", family.name, family.reason)
         }
@@ -189,7 +190,7 @@ fn why(open: &Open<'_>, unit: Option<&str>) -> String {
             family.name,
             family.above_unrelated_db().unwrap_or(0.0),
             100.0 * family.depth.unwrap_or(0.0),
-            100.0 * KNOCK
+            100.0 * IMPACT
         ),
         Open::Weak(Some(Limit { peak, over_rms, band_hz })) => format!(
             "impacts below {}, {} times its RMS, would not show, and those of spalls are weaker; a longer record, one \
@@ -217,10 +218,10 @@ pub(crate) fn probability(p: f64) -> String {
 mod tests {
     use super::*;
 
-    /// A ball of a 6203 knocks 3.99 times a turn of the shaft: the record was said to knock at no frequency of the
+    /// A ball of a 6203 impacts 3.99 times a turn of the shaft: the record was said to impact at no frequency of the
     /// bearing.
     #[test]
-    fn issue_knocks_beside_a_multiple_of_the_shaft_are_not_those_of_no_family() {
+    fn issue_impacts_beside_a_multiple_of_the_shaft_are_not_those_of_no_family() {
         let bsf = Family { undecided: true, ..Family::expected(Defect::Bsf, 49.861) };
         let says = |family: &Family, hz: f64| {
             let other = Unexplained { hz, order: hz / 25.0, height_db: 20.0, band_hz: (1e3, 2e3) };

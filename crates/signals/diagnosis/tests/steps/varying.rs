@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use stribeck_diagnosis::Varying;
 use stribeck_diagnosis::speed::varying::turns_between;
 
-/// Knocks 3.6 times a turn of a shaft from 10 to 30 turns a second stand at their order all the time.
+/// Impacts 3.6 times a turn of a shaft from 10 to 30 turns a second stand at their order all the time.
 #[test]
 fn planted_a_family_stands_still_over_the_angle() {
     let rate_hz = 20_000.0;
@@ -21,7 +21,7 @@ fn planted_a_family_stands_still_over_the_angle() {
     let (first, last) = (found.speeds_rpm[0], found.speeds_rpm[found.speeds_rpm.len() - 1]);
     assert!((first - 600.0).abs() < 10.0 && (last - 1800.0).abs() < 10.0, "{first} {last}");
     let orders = found.orders.expect("enough turns");
-    // Knocks are short: their second harmonic is as high as the first, and above the range of the search.
+    // Impacts are short: their second harmonic is as high as the first, and above the range of the search.
     let below = (5.4 / orders.grid_hz) as usize;
     let columns: Vec<&[f64]> = orders.values.chunks_exact(orders.lines).collect();
     // A column into which no segment falls has no numbers.

@@ -9,7 +9,7 @@ fn issue_a_comb_that_is_no_family_is_named_and_nothing_weaker_is_claimed() {
     // The bearing that was given is not the one that runs: 4.3 times the shaft is none of its families.
     let shaft_hz = 20.0;
     let [foreign, raceway] =
-        [(4.3, 1.0), (3.585, 0.3)].map(|(order, k)| knocks(order * shaft_hz, SAMPLES, |_| k));
+        [(4.3, 1.0), (3.585, 0.3)].map(|(order, k)| impacts(order * shaft_hz, SAMPLES, |_| k));
     let signal = sum([(1.0, foreign), (1.0, raceway), (1.0, coloured(5, SAMPLES))]);
     let findings = analysed(signal, 60.0 * shaft_hz);
     assert!(claimed(&findings).is_empty(), "{findings:#?}");
@@ -19,7 +19,7 @@ fn issue_a_comb_that_is_no_family_is_named_and_nothing_weaker_is_claimed() {
 
 #[test]
 fn issue_a_foreign_comb_in_another_band_does_not_veto_a_raceway() {
-    // A rig's converter knocks at 2.1 times the shaft above 5 kHz, louder than the outer raceway below 2 kHz.
+    // A rig's converter strikes at 2.1 times the shaft above 5 kHz, louder than the outer raceway below 2 kHz.
     let shaft_hz = 20.0;
     let with = |outer: f64| {
         let mut noise = Noise::new(3);

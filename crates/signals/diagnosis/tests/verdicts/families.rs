@@ -14,12 +14,12 @@ fn planted_each_defect_is_distinguished_from_the_others_with_slip() {
     let with_the_shaft = move |t: f64| 1.0 + (TAU * shaft_hz * t).cos();
     let with_the_cage = move |t: f64| 1.0 + (TAU * 0.394 * shaft_hz * t).cos();
     let cases = [
-        (Defect::Bpfo, 3.585 * 0.99, knocks(3.585 * 0.99 * shaft_hz, SAMPLES, always)),
-        (Defect::Bpfi, 5.415 * 1.01, knocks(5.415 * 1.01 * shaft_hz, SAMPLES, with_the_shaft)),
-        (Defect::Bsf, 2.357 * 0.985, knocks(2.0 * 2.357 * 0.985 * shaft_hz, SAMPLES, with_the_cage)),
+        (Defect::Bpfo, 3.585 * 0.99, impacts(3.585 * 0.99 * shaft_hz, SAMPLES, always)),
+        (Defect::Bpfi, 5.415 * 1.01, impacts(5.415 * 1.01 * shaft_hz, SAMPLES, with_the_shaft)),
+        (Defect::Bsf, 2.357 * 0.985, impacts(2.0 * 2.357 * 0.985 * shaft_hz, SAMPLES, with_the_cage)),
     ];
-    for (name, order, knocks) in cases {
-        let findings = analysed(sum([(1.0, knocks), (1.0, coloured(5, SAMPLES))]), 60.0 * shaft_hz);
+    for (name, order, impacts) in cases {
+        let findings = analysed(sum([(1.0, impacts), (1.0, coloured(5, SAMPLES))]), 60.0 * shaft_hz);
         assert_eq!(claimed(&findings), [name.name()], "{findings:#?}");
         let family = family(&findings, name);
         // Half a line of 0.2 Hz.
@@ -33,8 +33,8 @@ fn planted_each_defect_is_distinguished_from_the_others_with_slip() {
 fn planted_a_second_defect_is_distinguished_from_the_sidebands_of_the_first() {
     let shaft_hz = 20.0;
     let (outer_hz, inner_hz) = (3.585 * 0.995 * shaft_hz, 5.415 * 1.003 * shaft_hz);
-    let outer = knocks(outer_hz, SAMPLES, |_| 1.0);
-    let inner = knocks(inner_hz, SAMPLES, under_the_load(shaft_hz));
+    let outer = impacts(outer_hz, SAMPLES, |_| 1.0);
+    let inner = impacts(inner_hz, SAMPLES, under_the_load(shaft_hz));
     let both = sum([(6.0, outer), (4.0, inner), (1.0, coloured(5, SAMPLES))]);
     let findings = analysed(both, 60.0 * shaft_hz);
     assert_eq!(claimed(&findings), ["BPFO", "BPFI"], "{findings:#?}");
@@ -46,7 +46,7 @@ fn planted_a_second_defect_is_distinguished_from_the_sidebands_of_the_first() {
         findings.verdict.contains("outer raceway") && findings.verdict.contains("and a defect of the inner")
     );
     // A first one that comes and goes with the shaft is no second one.
-    let turning = knocks(outer_hz, SAMPLES, under_the_load(shaft_hz));
+    let turning = impacts(outer_hz, SAMPLES, under_the_load(shaft_hz));
     let alone = sum([(2.0, turning), (1.0, coloured(5, SAMPLES))]);
     assert_eq!(claimed(&analysed(alone, 60.0 * shaft_hz)), ["BPFO"]);
 }
@@ -58,7 +58,7 @@ fn issue_sidebands_near_the_places_of_other_families_are_no_defects() {
     // itself is 0.8 Hz from five turns of the shaft, which 0.8 s do not resolve and 5 s do.
     let shaft_hz = 25.0;
     let findings = |samples: usize| {
-        let inner = knocks(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
+        let inner = impacts(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
         let bearing = CatalogueBearing::parse("6203").ok();
         let machine = Machine { speed_rpm: Some(60.0 * shaft_hz), bearing, ..Machine::default() };
         judged(sum([(4.0, inner), (1.0, coloured(7, samples))]), &machine)
@@ -75,8 +75,8 @@ fn issue_a_family_at_a_multiple_of_the_shaft_is_undecided_by_name() {
     let shaft_hz = 25.0;
     let outer_hz = bearing.orders().unwrap().bpfo * shaft_hz;
     let machine = Machine { speed_rpm: Some(60.0 * shaft_hz), bearing: Some(bearing), ..Machine::default() };
-    let knocks = knocks(outer_hz, 16_384, |_| 1.0);
-    let findings = judged(sum([(2.0, knocks), (1.0, coloured(5, 16_384))]), &machine);
+    let impacts = impacts(outer_hz, 16_384, |_| 1.0);
+    let findings = judged(sum([(2.0, impacts), (1.0, coloured(5, 16_384))]), &machine);
     assert!(claimed(&findings).is_empty() && findings.families[0].undecided, "{findings:#?}");
     assert!(findings.verdict.contains("does not decide about BPFO"), "{}", findings.verdict);
 }
@@ -86,9 +86,9 @@ fn issue_what_no_rolling_explains_is_another_bearings() {
     // By the lines of the shaft 1.7 % above BPFO: a cage that slips is slower, and no contact so steep.
     let shaft_hz = 25.0;
     let of = |order: f64| {
-        let knocks = knocks(order * shaft_hz, 2 * SAMPLES, |_| 1.0);
+        let impacts = impacts(order * shaft_hz, 2 * SAMPLES, |_| 1.0);
         let lines = unbalance(shaft_hz, 2 * SAMPLES);
-        analysed(sum([(1.0, knocks), (1.0, coloured(5, 2 * SAMPLES)), (1.0, lines)]), 60.0 * shaft_hz)
+        analysed(sum([(1.0, impacts), (1.0, coloured(5, 2 * SAMPLES)), (1.0, lines)]), 60.0 * shaft_hz)
     };
     let (fast, slow) = (of(1.017 * 3.585), of(0.985 * 3.585));
     assert!(claimed(&fast).is_empty(), "{fast:#?}");
@@ -96,17 +96,17 @@ fn issue_what_no_rolling_explains_is_another_bearings() {
     assert_eq!(claimed(&slow), ["BPFO"], "{slow:#?}");
 }
 
-/// What knocks half as often as elements pass has lines where the outer raceway has its own. Elements of
-/// which every second one knocks a third more are still the raceway’s.
+/// What strikes half as often as elements pass has lines where the outer raceway has its own. Elements of
+/// which every second one strikes a third more are still the raceway’s.
 #[test]
 fn issue_a_comb_at_half_the_frequency_of_a_raceway_is_not_the_raceway() {
     let passing_hz = 3.585 * 20.0;
-    let with_noise = |knocks| analysed(sum([(1.0, knocks), (1.0, coloured(5, SAMPLES))]), 1200.0);
-    let half = with_noise(knocks(0.5 * passing_hz, SAMPLES, |_| 1.0));
+    let with_noise = |impacts| analysed(sum([(1.0, impacts), (1.0, coloured(5, SAMPLES))]), 1200.0);
+    let half = with_noise(impacts(0.5 * passing_hz, SAMPLES, |_| 1.0));
     assert!(claimed(&half).is_empty(), "{half:#?}");
     let other = half.unexplained.unwrap_or_else(|| panic!("no comb: {}", half.verdict));
     assert!((other.hz / (0.5 * passing_hz) - 1.0).abs() < 2e-3, "{other:?}");
     let each = |at: f64| if (at * passing_hz).round() % 2.0 < 0.5 { 1.15 } else { 0.85 };
-    let raceway = with_noise(knocks(passing_hz, SAMPLES, each));
+    let raceway = with_noise(impacts(passing_hz, SAMPLES, each));
     assert_eq!(claimed(&raceway), ["BPFO"], "{raceway:#?}");
 }

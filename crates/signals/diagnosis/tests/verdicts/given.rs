@@ -12,13 +12,13 @@ const SAMPLES: usize = 131_072;
 /// No whole number.
 const SHAFT_HZ: f64 = 23.71;
 
-/// Knocks of the outer raceway of a 6205 in noise, and lines at `multiples` of the shaft.
+/// Impacts of the outer raceway of a 6205 in noise, and lines at `multiples` of the shaft.
 fn outer_raceway(multiples: &[u32]) -> Vec<f64> {
-    knocks(CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfo, multiples)
+    impacts(CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfo, multiples)
 }
 
-/// Knocks at `order` times the shaft that ring at 3 kHz in noise, and lines at `multiples` of it.
-fn knocks(order: f64, multiples: &[u32]) -> Vec<f64> {
+/// Impacts at `order` times the shaft that ring at 3 kHz in noise, and lines at `multiples` of it.
+fn impacts(order: f64, multiples: &[u32]) -> Vec<f64> {
     let mut noise = Noise::new(7);
     let turns = |n: usize| -> f64 {
         let turn = TAU * SHAFT_HZ * n as f64 / RATE_HZ;
@@ -46,7 +46,7 @@ fn issue_half_of_a_speed_is_taken_where_shaft_and_raceway_say_so() {
     assert!(findings.verdict.contains("half of the 2845.2 rpm that were given"), "{}", findings.verdict);
 }
 
-/// With the even multiples alone the shaft may well turn as fast as given; what knocks stays unnamed.
+/// With the even multiples alone the shaft may well turn as fast as given; what strikes stays unnamed.
 #[test]
 fn issue_half_of_a_speed_is_not_taken_without_lines_of_the_shaft_at_it() {
     for multiples in [&[2, 4, 6, 8][..], &[]] {
@@ -71,7 +71,7 @@ fn uncounted() -> [CatalogueBearing; 2] {
 
 /// 372 of 380 bearings of the catalogue have no number, and had no verdict.
 #[test]
-fn planted_the_number_of_rolling_elements_is_found_by_the_knocks() {
+fn planted_the_number_of_rolling_elements_is_found_by_the_impacts() {
     let rpm = 60.0 * SHAFT_HZ;
     let [balls, rollers] = uncounted();
     let findings = analysed_with(balls.clone(), outer_raceway(&[1, 2, 3]), rpm);
@@ -93,8 +93,8 @@ fn planted_the_number_of_rolling_elements_is_found_by_the_knocks() {
         silent.verdict
     );
 
-    // Two numbers explain the same knocks.
-    let both = analysed_with(rollers, knocks(7.0 * (1.0 + 2.5 / 16.5), &[1, 2, 3]), rpm);
+    // Two numbers explain the same impacts.
+    let both = analysed_with(rollers, impacts(7.0 * (1.0 + 2.5 / 16.5), &[1, 2, 3]), rpm);
     assert!(claimed(&both).is_empty(), "{}", both.verdict);
     for part in ["the outer raceway would with 19 (BPFO", "the inner raceway would with 14 (BPFI"] {
         assert!(both.verdict.contains(part), "{part}: {}", both.verdict);

@@ -12,8 +12,8 @@ fn planted_channels_together_name_the_nearest() {
     let of = |samples| Analysis::of(&Channel::held("a", samples), RATE_HZ, &machine(1200.0)).unwrap();
     let heard = |seed, part: f64| -> Vec<f64> {
         let order = CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfo;
-        let knocks = knocks(order * 20.0, SAMPLES, |_| part);
-        sum([(1.0, coloured(seed, SAMPLES)), (1.0, knocks)])
+        let impacts = impacts(order * 20.0, SAMPLES, |_| part);
+        sum([(1.0, coloured(seed, SAMPLES)), (1.0, impacts)])
     };
     let (near, far, deaf) = (of(heard(1, 1.0)), of(heard(2, 0.5)), of(coloured(3, SAMPLES)));
     let named = |all: &[&'static str], analyses: [&Analysis; 2]| {

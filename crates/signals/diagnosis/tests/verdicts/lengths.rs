@@ -49,7 +49,7 @@ fn planted_a_second_event_gives_a_length_and_the_longer_one_that_it_may_mean() {
 }
 
 #[test]
-fn issue_one_knock_an_element_is_no_length() {
+fn issue_one_impact_an_element_is_no_length() {
     // A simulated spall of 4 mm, whose elements never came free, was given as one below 1.83 mm.
     let found = judged_at(FAST_HZ, edges(71.7, 0.0, 0.6e-3), &machine(1200.0));
     assert!(found.spall_mm.is_none() && found.spall_below_mm.is_some_and(|mm| mm < 4.0), "{found:?}");

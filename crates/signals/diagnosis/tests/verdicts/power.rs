@@ -111,7 +111,7 @@ fn planted_a_comb_beside_a_raceway_is_a_hypothesis_with_a_name() {
     let place_hz = 3.585 * 20.0;
     let exact = Machine { speed_is_exact: true, ..machine(1200.0) };
     let found =
-        judged(sum([(1.0, knocks(1.03 * place_hz, SAMPLES, |_| 1.0)), (1.0, coloured(5, SAMPLES))]), &exact);
+        judged(sum([(1.0, impacts(1.03 * place_hz, SAMPLES, |_| 1.0)), (1.0, coloured(5, SAMPLES))]), &exact);
     assert!(claimed(&found).is_empty(), "{found:#?}");
     assert!(found.verdict.contains("it is the outer raceway, if the speed is 1236 rpm"), "{}", found.verdict);
     assert_eq!(found.conclusion.raceways.answer, Answer::CannotTell);
@@ -119,7 +119,7 @@ fn planted_a_comb_beside_a_raceway_is_a_hypothesis_with_a_name() {
 
 #[test]
 fn issue_a_speed_in_hertz_is_asked_about() {
-    let of = |samples| sum([(2.0, knocks(3.585 * 20.0, samples, |_| 1.0)), (1.0, coloured(5, samples))]);
+    let of = |samples| sum([(2.0, impacts(3.585 * 20.0, samples, |_| 1.0)), (1.0, coloured(5, samples))]);
     let found = judged(of(2 * SAMPLES), &machine(20.0));
     assert!(found.verdict.contains("Is the speed 20 Hz, not 20 rpm?"), "{}", found.verdict);
     assert_ne!(found.conclusion.raceways.answer, Answer::NoDefect);
@@ -127,7 +127,7 @@ fn issue_a_speed_in_hertz_is_asked_about() {
 
 #[test]
 fn issue_one_channel_twice_is_one_witness() {
-    let signal = sum([(1.0, knocks(3.585 * 20.0, SAMPLES, |_| 1.0)), (1.0, coloured(5, SAMPLES))]);
+    let signal = sum([(1.0, impacts(3.585 * 20.0, SAMPLES, |_| 1.0)), (1.0, coloured(5, SAMPLES))]);
     let one = analysis(signal, RATE_HZ, &machine(1200.0));
     let joint = Joint::of(&[("1".to_owned(), &one), ("2".to_owned(), &one)]).unwrap();
     assert!(joint.notes.iter().any(|note| note.contains("`1` and `2` hold the same samples")), "{joint:?}");

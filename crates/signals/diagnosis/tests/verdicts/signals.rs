@@ -14,7 +14,7 @@ pub(crate) fn machine(rpm: f64) -> Machine {
     Machine { speed_rpm: Some(rpm), bearing: CatalogueBearing::parse("6205").ok(), ..Machine::default() }
 }
 
-/// How a knock rings.
+/// How an impact rings.
 #[derive(Clone, Copy)]
 pub(crate) struct Ring {
     /// Samples in a second of the record.
@@ -29,7 +29,7 @@ pub(crate) struct Ring {
 pub(crate) const RING: Ring = Ring { rate_hz: RATE_HZ, hz: 3_000.0, decay_s: 1e-3, samples: 150 };
 
 impl Ring {
-    /// Adds a knock at a time [s].
+    /// Adds an impact at a time [s].
     pub(crate) fn add(self, signal: &mut [f64], at: f64, strength: f64) {
         let first = (at * self.rate_hz).ceil().max(0.0) as usize;
         for (n, x) in signal.iter_mut().enumerate().skip(first).take(self.samples) {
@@ -38,7 +38,7 @@ impl Ring {
         }
     }
 
-    /// Adds knocks `hz` times a second, as strong as `strength` says at their time, each late or early by up
+    /// Adds impacts `hz` times a second, as strong as `strength` says at their time, each late or early by up
     /// to 1 % of a period.
     pub(crate) fn add_all(
         self,
@@ -75,8 +75,8 @@ pub(crate) fn coloured(seed: u64, samples: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Knocks `hz` times a second without noise, as strong as `strength` says at their time.
-pub(crate) fn knocks(hz: f64, samples: usize, strength: impl Fn(f64) -> f64) -> Vec<f64> {
+/// Impacts `hz` times a second without noise, as strong as `strength` says at their time.
+pub(crate) fn impacts(hz: f64, samples: usize, strength: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut signal = vec![0.0; samples];
     RING.add_all(&mut signal, &mut Noise::new(99), hz, |at| 12.0 * strength(at));
     signal

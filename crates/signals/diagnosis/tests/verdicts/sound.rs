@@ -37,7 +37,7 @@ fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
         findings.families[0].is_there() && findings.verdict.starts_with("No defect of a raceway whose"),
         "{findings:#?}"
     );
-    // Where this machine showed nothing of it when it was sound, it is a defect; with one sound record that
+    // Where this machine showed nothing of it when it was sound, it is a defect; with one healthy record that
     // shows as much, or with too few of them, it is not.
     let score_db = findings.score_db.unwrap();
     let beside = |sound_db: &[f64]| {
@@ -47,7 +47,7 @@ fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
     let sound_db = [-1.0, 0.5, 0.2, -0.3, 0.8, -0.6, 0.1];
     let found = beside(&sound_db);
     assert!(score_db > 5.0 && claimed(&found) == ["BPFO"], "{found:#?}");
-    assert!(found.families[0].reason.to_string().contains("7 records of the sound machine"), "{found:#?}");
+    assert!(found.families[0].reason.to_string().contains("7 records of the healthy machine"), "{found:#?}");
     let one_as_high = beside(&[&sound_db[..], &[score_db]].concat());
     assert!(claimed(&one_as_high).is_empty(), "{one_as_high:#?}");
     assert_eq!(one_as_high.sound_as_high.map(|s| (s.as_high, s.records)), Some((1, 8)));

@@ -23,7 +23,7 @@ const TEETH: f64 = 23.0;
 /// Draws, unless `STRIBECK_DRAWS` says another number: of 100, none is called what it is not, and 111 of 117
 /// defects are named (two minutes).
 const DRAWS: u64 = 12;
-/// Least part of the defects that is named: knocks are as weak as twice the noise, and a family that slip
+/// Least part of the defects that is named: impacts are as weak as twice the noise, and a family that slip
 /// brings within a resolution of a multiple of a shaft cannot be distinguished from it.
 const NAMED: f64 = 0.8;
 

@@ -7,16 +7,16 @@ use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::signals::*;
 
-/// A damaged inner raceway: its knocks go up and down once a turn of the shaft, which is out of balance.
+/// A damaged inner raceway: its impacts go up and down once a turn of the shaft, which is out of balance.
 fn inner_raceway(shaft_hz: f64) -> Vec<f64> {
     let order = CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfi;
     let loaded = |at: f64| 1.0 + 0.8 * (TAU * shaft_hz * at).cos();
-    let knocks = knocks(order * shaft_hz, SAMPLES, loaded);
+    let impacts = impacts(order * shaft_hz, SAMPLES, loaded);
     let turns = |n: usize| -> f64 {
         let at = n as f64 / RATE_HZ;
         (1..=4).map(|k| (TAU * f64::from(k) * shaft_hz * at + f64::from(k)).sin()).sum()
     };
-    coloured(5, SAMPLES).iter().zip(knocks).enumerate().map(|(n, (a, b))| a + b + turns(n)).collect()
+    coloured(5, SAMPLES).iter().zip(impacts).enumerate().map(|(n, (a, b))| a + b + turns(n)).collect()
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn issue_the_speed_is_found_by_shaft_and_bearing_together() {
 fn issue_a_speed_that_is_four_per_cent_off_is_corrected_by_the_lines_of_the_shaft() {
     // A rig ran 4 % off its nominal speed: BPFO plus two turns of the shaft lay at BPFI, and was claimed.
     let true_hz = 25.0;
-    let outer = knocks(3.585 * true_hz, 2 * SAMPLES, |t| 1.0 + 0.5 * (TAU * true_hz * t).cos());
+    let outer = impacts(3.585 * true_hz, 2 * SAMPLES, |t| 1.0 + 0.5 * (TAU * true_hz * t).cos());
     let lines = unbalance(true_hz, 2 * SAMPLES);
     let signal = sum([(1.0, outer), (1.0, coloured(5, 2 * SAMPLES)), (1.0, lines)]);
     let findings = analysed(signal, 0.96 * 60.0 * true_hz);
@@ -66,8 +66,8 @@ fn issue_lines_of_the_bearing_are_not_taken_for_those_of_the_shaft() {
     let at = |n: usize, hz: f64| (TAU * hz * n as f64 / RATE_HZ).sin();
     let lines = |n| (1..=3).map(|m| at(n, f64::from(m) * order * shaft_hz)).sum();
     let lines = (0..SAMPLES).map(lines).collect();
-    let knocks = knocks(order * shaft_hz, SAMPLES, |_| 1.0);
-    let findings = judged(sum([(1.0, knocks), (1.0, coloured(5, SAMPLES)), (1.0, lines)]), &machine);
+    let impacts = impacts(order * shaft_hz, SAMPLES, |_| 1.0);
+    let findings = judged(sum([(1.0, impacts), (1.0, coloured(5, SAMPLES)), (1.0, lines)]), &machine);
     assert_eq!(findings.speed_rpm, Some(60.0 * shaft_hz), "{:?}", findings.notes);
     assert_eq!(claimed(&findings), ["BPFO"], "{findings:#?}");
 }
@@ -78,7 +78,7 @@ fn issue_a_small_error_of_the_speed_is_corrected() {
     /// Part that is left: a fifth of the resolution of the shaft's first line in ten seconds is 7e-4.
     const LEFT: f64 = 1e-3;
     let true_hz = 29.6;
-    let outer = knocks(3.585 * true_hz, 2 * SAMPLES, |_| 1.0);
+    let outer = impacts(3.585 * true_hz, 2 * SAMPLES, |_| 1.0);
     let signal = sum([(1.0, outer), (1.0, coloured(5, 2 * SAMPLES)), (1.0, unbalance(true_hz, 2 * SAMPLES))]);
     for rpm in [1771.0, 1775.0] {
         let findings = analysed(signal.clone(), rpm);

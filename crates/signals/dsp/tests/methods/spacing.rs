@@ -74,7 +74,7 @@ fn planted_a_second_event_halfway_between_passages_shows() {
     assert!((found.lag_s - 8.2e-3).abs() < 0.1e-3, "{found:?}");
 }
 
-/// An element that is let go knocks twice, the second time louder: the entry is the first of them.
+/// An element that is let go strikes twice, the second time louder: the entry is the first of them.
 #[test]
 fn planted_an_event_of_two_peaks_begins_with_the_first() {
     let first = unequal(5e-3, 0.2e-3, 0.5);
@@ -85,7 +85,7 @@ fn planted_an_event_of_two_peaks_begins_with_the_first() {
     assert!((found.lag_s - 5e-3).abs() < 0.1e-3, "{found:?}");
 }
 
-/// A body that bounces at the second event knocks twice within a millisecond, both times louder
+/// A body that bounces at the second event strikes twice within a millisecond, both times louder
 /// than the next one that enters.
 #[test]
 fn planted_a_bounce_is_not_taken_for_the_second_event() {

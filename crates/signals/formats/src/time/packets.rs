@@ -140,7 +140,7 @@ pub(super) fn told(
                 more => format!(", and so at {more} more places"),
             };
             notes.push(format!(
-                "packets lack: {lost} of {:.0}, the first after row {}{more}. Knocks before and after them do not \
+                "packets lack: {lost} of {:.0}, the first after row {}{more}. Impacts before and after them do not \
                  line up: cut the file there and take the longest part",
                 packets.rows / size + lost,
                 first[1].0

@@ -37,7 +37,7 @@ fn issue_steps_are_short_enough_for_springs_of_friction() {
         (frames: None),
         contact: (surface: arc, penalty_scale: 0.2, friction: 0.5), solver: (duration_ms: 10, \
         structural_damping: None))";
-    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let scene = Scene::parse(text, "here").expect("a valid scene");
     let info = run(&scene, &folder, "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     println!("steps of {:.2e} s, off by {:.2e}", info.time_step_s, info.energy.max_relative_error);
@@ -196,7 +196,7 @@ fn issue_a_light_load_in_a_rigid_housing_is_no_divergence() {
         (pocket: corners),
         operation: (load_n: 193, speed_rpm: 535), solver: (duration_ms: 10), output: (interval_us: 50, \
         frames: None))";
-    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let scene = Scene::parse(text, "here").expect("a valid scene");
     let info = run(&scene, &Scratch::create("reduced-rigid-light"), "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     assert!(info.energy.max_relative_error > 0.25, "{}", info.energy.max_relative_error);

@@ -11,7 +11,7 @@ fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
     const STEPS: usize = 300;
     let scene = coarse(10.0);
     let mesh = ReducedMesh::new(&scene.resolve()).expect("modes");
-    let modal = modal_bearing(&scene.resolve(), mesh.reduction).expect("a sound scene");
+    let modal = modal_bearing(&scene.resolve(), mesh.reduction).expect("a valid scene");
     let bearing = Bearing::new(modal, 2e-6).expect("a bearing");
     let saved = Saved::first(&bearing, bearing.at_start(&dense::solve).expect("an equilibrium"));
     let mut motion = BearingInMotion::new(bearing.clone(), saved);
@@ -33,7 +33,7 @@ fn behaves_a_step_beyond_the_critical_one_is_shortened() {
         operation: (load_n: 3000.0, speed_rpm: 1500.0), mesh: (size_mm: 0.5, roller_facets: 56), output: \
         (frames: None),
         solver: (duration_ms: 1.0, mass_damping_per_s: 5000.0, structural_damping: None))";
-    let info = run(&Scene::parse(text, "here").expect("a sound scene"), &folder, "stiff", 1);
+    let info = run(&Scene::parse(text, "here").expect("a valid scene"), &folder, "stiff", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     assert!(info.time_step_s < info.critical_time_step_s && info.critical_time_step_s < 5e-6, "{info:?}");
     assert!(
@@ -102,7 +102,7 @@ fn larger_by_radius_or_rim(film: &str) {
         defect: None, housing: rigid(mass_kg: 1), operation: (load_n: 2000, speed_rpm: 1000), \
         output: (frames: None), solver: (duration_ms: 5))";
     let text = text.replace("FILM", film);
-    let by_radius = Scene::parse(&text, "here").expect("a sound scene");
+    let by_radius = Scene::parse(&text, "here").expect("a valid scene");
     let waves = |i| format!("(on: roller({i}), form: waviness(order: 2, amplitude_um: 0.0))");
     let waves: Vec<String> = (1..=by_radius.bearing.rollers).map(waves).collect();
     let by_rim = by_radius.with_overrides(&[format!("defects=[{}]", waves.join(", "))]).expect("a scene");
@@ -245,7 +245,7 @@ fn behaves_light_loads() {
               contact: (surface: arc, friction: 0.05), \
              solver: (duration_ms: 20, mass_damping_per_s: 5000, structural_damping: None))"
         );
-        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let scene = Scene::parse(&text, "here").expect("a valid scene");
         let folder = Scratch::create("reduced-light");
         let info = run(&scene, &folder, "run", 1);
         assert_eq!(info.status, Status::Complete, "{load_n} N: {:?}", info.stop_reason);
@@ -274,7 +274,7 @@ fn analytic_rollers_in_a_rigid_housing() {
              contact: (surface: arc, penalty_scale: 10),
               solver: (duration_ms: 2))"
         );
-        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let scene = Scene::parse(&text, "here").expect("a valid scene");
         let folder = Scratch::create("reduced-rigid");
         let info = run(&scene, &folder, "run", 1);
         assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
@@ -305,7 +305,7 @@ fn analytic_rollers_in_a_rigid_housing() {
 #[test]
 fn issue_a_ball_passes_the_spall_of_a_bearing_by_name() {
     let text = "(bearing: \"6305\", model: reduced(), output: (frames: None), solver: (duration_ms: 25))";
-    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let scene = Scene::parse(text, "here").expect("a valid scene");
     let folder = Scratch::create("reduced-passes");
     let info = run(&scene, &folder, "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
@@ -342,7 +342,7 @@ fn analytic_bearings_by_name_carry_as_hertz_says() {
              operation: (load_n: {load_n:?}, speed_rpm: 0, gravity_m_s2: 0), output: (frames: None),
              solver: (duration_ms: 0.05, structural_damping: None))"
         );
-        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let scene = Scene::parse(&text, "here").expect("a valid scene");
         let at = format!("{}-{load_n}-{profile}", scene.name);
         let info = run(&scene, &folder, &at, 1);
         assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);

@@ -37,7 +37,7 @@ pub(super) fn table(summary: &Summary) -> Markup {
         @if diagnosis.families.iter().any(|family| family.claimed && !family.present) {
             p { "What is claimed and is no defect of the scene may be the rattle of elements that come under \
                 the load: a run has no noise "
-                "but its bearing's, so that this alone can swing its power as knocks do. In a machine's \
+                "but its bearing's, so that this alone can swing its power as impacts do. In a machine's \
                  noise such claims go "
                 "(`stribeck export` with `--sensor`, `noise_density`)." }
         }

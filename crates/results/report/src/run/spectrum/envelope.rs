@@ -30,7 +30,7 @@ pub(super) fn figure(findings: &Findings) -> Option<Figure> {
             format!("No multiple of {name} stands 10 dB above its surroundings.")
         } else {
             format!(
-                "Knocks come at {name}: of its multiples {} stand 10 dB above their surroundings.",
+                "Impacts come at {name}: of its multiples {} stand 10 dB above their surroundings.",
                 seen.join(", ")
             )
         })

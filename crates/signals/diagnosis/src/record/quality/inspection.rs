@@ -249,7 +249,7 @@ impl Inspection {
             .collect();
         let words = format!(
             "one value too often: {}, as no other value is; a mark of missing samples, or what a dead zone leaves, \
-             which looks like knocks. Leave the field empty in their place",
+             which looks like impacts. Leave the field empty in their place",
             each.join(" and ")
         );
         (!marks.is_empty()).then(|| self.quality(Kind::Marked, share, 0, words))
@@ -388,7 +388,7 @@ impl Inspection {
         let share = self.part(run.count);
         let words = format!(
             "dead channel: the {} {:.2} s ({} of the samples) stand at {}; there is no signal, and levels and \
-             kurtosis are not those of the machine. Cut the record to its sound part",
+             kurtosis are not those of the machine. Cut the record to its valid part",
             if run.to_end { "last" } else { "first" },
             run.count as f64 / self.rate_hz,
             percent(share),
@@ -483,7 +483,7 @@ impl Inspection {
             self.quality(Kind::Dead, share, (from * self.length) as u64, format!(
                 "dead channel: the {side} {seconds:.2} s ({} of the samples) have less than a hundredth of \
                  the level of the rest; the machine stood still, or the sensor came loose. Cut the record \
-                 to its sound part",
+                 to its valid part",
                 percent(share)
             ))
         })
@@ -498,7 +498,7 @@ impl Inspection {
         }
         let deviations: Vec<f64> = some.iter().map(|s| s.deviation()).collect();
         let usual = median(&deviations)?;
-        // Over an eighth of the record each, so that one knock or step inside moves it little.
+        // Over an eighth of the record each, so that one impact or step inside moves it little.
         let eighth = some.len() / 8;
         let mean = |part: &[&Stretch]| part.iter().map(|s| s.mean()).sum::<f64>() / part.len() as f64;
         let means: Vec<f64> = some.chunks(eighth).filter(|c| c.len() == eighth).map(mean).collect();
@@ -521,7 +521,7 @@ impl Inspection {
     }
 }
 
-/// Fewest steps across a range that whole numbers of a width fill: of sound ones one or two are as large by chance.
+/// Fewest steps across a range that whole numbers of a width fill: of valid ones one or two are as large by chance.
 const ACROSS: usize = 8;
 /// Share of steps at the largest ones from which on the slew rate is limited.
 const SLEWING: f64 = 0.02;
