@@ -142,9 +142,9 @@ fn faults(run: &Finished, wanted: &[&str]) -> Vec<String> {
     faults
 }
 
-/// Energy that is missing, of the heat or of the peak strain energy, whichever is larger.
+/// Energy that is missing, of what contacts dissipate.
 fn imbalance(energy: &EnergyFinding) -> f64 {
-    energy.share_of_heat.unwrap_or(energy.max_relative_error)
+    energy.share_of_contacts.unwrap_or(energy.max_relative_error)
 }
 
 /// A family that is claimed at another place than the motion has it, or without its sidebands. Impacts of a spot

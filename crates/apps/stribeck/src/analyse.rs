@@ -42,7 +42,7 @@ pub struct Options {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// A record of the same machine when it was sound, read with the same flags: its spectra and levels are
+    /// A record of the same machine when it was healthy, read with the same flags: its spectra and levels are
     /// drawn behind. May be repeated, the first is drawn; two or more, of several bearings where there are,
     /// calibrate the verdict, and combs of theirs that are no family's are set aside
     #[arg(long, value_name = "FILE")]

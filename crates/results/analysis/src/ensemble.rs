@@ -73,7 +73,7 @@ pub struct StartSummary {
     pub exit_g: Option<f64>,
     /// Largest |a_y| in the gaps [g].
     pub gap_g: Option<f64>,
-    /// Largest imbalance of energy over the larger of peak strain energy and heat.
+    /// Largest imbalance of energy over what contacts dissipate.
     pub energy_error: Option<f64>,
     /// Warnings of its run.
     pub warnings: Vec<String>,
@@ -228,7 +228,7 @@ impl StartSummary {
         self.roller_phase_deg = Some(run.scene.written.mesh.roller_phase_deg);
         self.simulated_ms = Some(1e3 * run.info.interval_s * run.info.samples as f64);
         self.wall_s = Some(run.info.wall_s + run.info.setup_s);
-        self.energy_error = Some(run.info.energy.of_larger());
+        self.energy_error = Some(run.info.energy.share());
         self.warnings.clone_from(&run.info.warnings);
         self.ended = match run.info.status {
             Status::Complete if shorter => Ended::Early,

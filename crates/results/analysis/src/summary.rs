@@ -153,7 +153,7 @@ quantities! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     pub struct EnergyFinding = of(energy: &EnergyInfo) {
         /// Largest |imbalance| divided by the peak strain energy.
-        pub max_relative_error: f64 = energy.max_relative_error => "imbalance of energy, of the peak strain energy",
+        pub max_relative_error: f64 = energy.max_relative_error,
         /// Peak strain energy [J].
         pub peak_strain_j: f64 = energy.peak_strain_j,
         /// Energy dissipated by friction, films and damping [J].
@@ -161,7 +161,13 @@ quantities! {
         pub heat_j: f64 = energy.heat_j => "heat of friction and damping" at 11,
         /// Largest |imbalance| over the heat [-], where that is more than the peak strain energy.
         #[serde(default)]
-        pub share_of_heat: Option<f64> = energy.share_of_heat() => "imbalance of energy, of the heat",
+        pub share_of_heat: Option<f64> = energy.share_of_heat(),
+        /// Largest |imbalance| over what contacts and films dissipate [-]; absent where they dissipate nothing.
+        #[serde(default)]
+        pub share_of_contacts: Option<f64> = energy.share_of_contacts() => "imbalance of energy, of what contacts dissipate",
+        /// Largest |imbalance| for each passage of an element [J]; absent before the first.
+        #[serde(default)]
+        pub missing_a_passage_j: Option<f64> = energy.missing_a_passage_j(),
     }
 }
 

@@ -21,7 +21,7 @@ use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings, O
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
 
-/// A record of the same machine when it was sound, drawn behind another one.
+/// A record of the same machine when it was healthy, drawn behind another one.
 #[derive(Debug, Clone)]
 pub struct Baseline {
     /// Name of its file.

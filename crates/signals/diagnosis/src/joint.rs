@@ -91,12 +91,39 @@ impl Joint {
     }
 }
 
+/// Samples of each channel that are compared.
+const COMPARED: usize = 1 << 14;
+/// Samples by which a channel may come after another one that it copies.
+const LATER: usize = 64;
+/// What a copy has beside the samples of the other, as a part of the power of its steps.
+const OWN: f64 = 1e-4;
+
+/// Whether one beginning is the other one, perhaps later, turned round, amplified, or with a little noise. Steps are compared,
+/// since two sensors on one machine may share their low frequencies.
+fn is_copy(one: &[f64], other: &[f64]) -> bool {
+    let steps =
+        |x: &[f64]| x[..x.len().min(COMPARED)].windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>();
+    let (one, other) = (steps(one), steps(other));
+    let length = one.len().min(other.len()).saturating_sub(LATER);
+    let power = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    let alike = |early: &[f64], late: &[f64]| {
+        let early = &early[..length];
+        (0..=LATER).any(|lag| {
+            let late = &late[lag..lag + length];
+            let both = early.iter().zip(late).map(|(a, b)| a * b).sum::<f64>();
+            let all = power(early) * power(late);
+            all > 0.0 && both * both >= (1.0 - OWN) * all
+        })
+    };
+    length > LATER && (alike(&one, &other) || alike(&other, &one))
+}
+
 /// The channels but for those with the samples of another one, and a note on each of these.
 fn without_copies<'a>(channels: &[(String, &'a Analysis)]) -> (Vec<(String, &'a Analysis)>, Vec<String>) {
     let mut own: Vec<(String, &Analysis)> = Vec::new();
     let mut notes = Vec::new();
     for (name, analysis) in channels {
-        match own.iter().find(|(_, other)| other.beginning == analysis.beginning) {
+        match own.iter().find(|(_, other)| is_copy(&other.beginning, &analysis.beginning)) {
             Some((other, _)) => notes
                 .push(format!("channels `{other}` and `{name}` hold the same samples: they are one witness")),
             None => own.push((name.clone(), *analysis)),

@@ -105,7 +105,7 @@ impl Judged {
             format!("a defect of {} would with {elements} ({name} at {hz:.2} Hz)", name.part())
         };
         found.verdict = format!(
-            "The record impacts as {}, of {least} to {most} rolling elements that makers may fit into `{name}`: count \
+            "The impacts are those of {}, of {least} to {most} rolling elements that makers may fit into `{name}`: count \
              them, and give `--bearing \"{name}, elements=…\"`.",
             claims.iter().map(would).collect::<Vec<_>>().join(" and ")
         );

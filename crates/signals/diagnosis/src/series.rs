@@ -170,6 +170,8 @@ impl SeriesFamily {
         let of = |record: &Option<&MeasuredFindings>| family(*record, name).cloned();
         let later: Vec<Family> = records.iter().skip(sound).filter_map(of).collect();
         let limit = if later.iter().any(|f| f.claimed && f.p_value >= ALPHA) { BEYOND_SOUND } else { ALPHA };
+        // All records, and the last ones: two chances.
+        let limit = 2.0 * limit;
         let End { p_value, last, claiming: last_claiming } = End::of(&later, limit);
         let together = pooled.iter().filter_map(|of| {
             let family = of.families.iter().find(|family| family.name == name && family.claimed)?;
@@ -178,6 +180,11 @@ impl SeriesFamily {
         });
         let together = together.max_by_key(|(last, ..)| *last);
         let by_records = p_value < limit && 2 * last_claiming >= last;
+        // A mean over records that claim it early and no longer later shows no defect.
+        let claims: Vec<bool> = later.iter().map(|family| family.claimed).collect();
+        let (early, late) = claims.split_at(claims.len() / 2);
+        let count = |part: &[bool]| part.iter().filter(|claims| **claims).count();
+        let together = together.filter(|_| count(late) >= count(early));
         let claimed = by_records || together.is_some();
         let p_value = together.filter(|_| !by_records).map_or(p_value, |(_, p_value, _)| p_value);
         let not_told_apart_from = together.filter(|_| !by_records).and_then(|(_, _, other)| other);
@@ -186,8 +193,12 @@ impl SeriesFamily {
             .iter()
             .map(|r| family(*r, name).map(Family::score_db).filter(|db| db.is_finite()))
             .collect();
-        let onset = if claimed { onset(&height_db, sound) } else { None };
-        let claiming = later.iter().filter(|family| family.claimed).count();
+        let claiming = count(&claims);
+        // Where all claim it, it was there before the first; and it begins no later than a record that claims it.
+        let first = records.iter().skip(sound).position(|r| family(*r, name).is_some_and(|f| f.claimed));
+        let bounded = |onset: &Onset| first.is_none_or(|first| onset.record <= sound + first + 1);
+        let onset =
+            if claimed && claiming < later.len() { onset(&height_db, sound).filter(bounded) } else { None };
         Self {
             name,
             p_value,
@@ -211,7 +222,8 @@ impl SeriesFamily {
 
 /// The end of a series, as many records of it as show a family.
 struct End {
-    /// The smallest of twice the medians of their probabilities, times the choices.
+    /// Twice the smaller of that of all, and the smallest of the last ones times their choices; each twice the median of
+    /// their probabilities.
     p_value: f64,
     last: usize,
     claiming: usize,
@@ -231,9 +243,12 @@ impl End {
             // One record is its own median; of more, the upper one, and twice.
             let median = p_values[last / 2] * if last == 1 { 1.0 } else { 2.0 };
             let claiming = end.iter().filter(|family| family.claimed).count();
-            Self { p_value: (median * choices.len() as f64).min(1.0), last, claiming }
+            let choices = if last == families.len() { 1 } else { choices.len() };
+            Self { p_value: (2.0 * median * choices as f64).min(1.0), last, claiming }
         };
-        let ends: Vec<Self> = choices.iter().map(|last| at(*last)).collect();
+        let all = (!families.is_empty()).then_some(families.len());
+        let all = all.filter(|all| choices.last() != Some(all));
+        let ends: Vec<Self> = choices.iter().copied().chain(all).map(at).collect();
         let smallest = ends.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
         let claims = |end: &&Self| end.p_value < limit && 2 * end.claiming >= end.last;
         match (smallest, ends.iter().rev().find(claims)) {
@@ -400,9 +415,14 @@ fn conclude(
         );
     }
     let single: usize = families.iter().map(|family| family.claiming).sum();
-    let some = match single {
-        0 => String::new(),
-        _ => format!(
+    let lasting = families.iter().filter(|f| f.last_claiming > 0 && 2 * f.last_claiming >= f.last);
+    let some = match (single, lasting.map(|f| f.p_value).reduce(f64::min)) {
+        (0, _) => String::new(),
+        (_, Some(p_value)) => format!(
+            " {single} of {analysed} records claim a defect, which together has a false alarm of {}.",
+            chance(p_value)
+        ),
+        (_, None) => format!(
             " {single} of {analysed} records claim a defect, and fewer than half of the last ones: none that lasts to \
              the end."
         ),
@@ -514,17 +534,21 @@ mod tests {
         families[7] = of(1e-6, true);
         let end = End::of(&families, ALPHA);
         assert_eq!((end.last, end.claiming), (1, 1));
-        assert!((end.p_value - 4e-6).abs() < 1e-12);
+        assert!((end.p_value - 8e-6).abs() < 1e-12);
         // A false alarm in the middle of a valid series is none at its end.
         families.swap(3, 7);
         assert!(End::of(&families, ALPHA).p_value > 0.5);
-        // Five of the last eight claim it, of which the upper median is 1e-4: 2 · 1e-4 · 4 is below 1e-3.
+        // Five of the last eight claim it, of which the upper median is 1e-4: 2 · 2 · 1e-4 is below 1e-3.
         for (at, p_value) in [(4, 1e-4), (5, 1e-7), (6, 1e-5), (7, 1e-7)] {
             families[at] = of(p_value, true);
         }
         let end = End::of(&families, ALPHA);
         assert_eq!((end.last, end.claiming), (8, 5), "the longest end that shows it");
-        assert!((end.p_value - 4e-7).abs() < 1e-15, "the smallest probability");
+        assert!((end.p_value - 8e-7).abs() < 1e-15, "the smallest probability");
+        // Six records that claim it as weakly as one must: all of them are one choice.
+        let end = End::of(&[const { 2.2e-4 }; 6].map(|p_value| of(p_value, true)), ALPHA);
+        assert_eq!((end.last, end.claiming), (6, 6));
+        assert!((end.p_value - 8.8e-4).abs() < 1e-12);
         assert!(End::of(&[], ALPHA).p_value >= 1.0);
     }
 }

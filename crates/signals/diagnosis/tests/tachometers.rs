@@ -288,6 +288,12 @@ fn issue_a_speed_over_time_is_no_tachometer_of_pulses() {
         1.0,
     );
     assert!(why.unwrap_err().to_string().contains("stands still at 0.0000 s"));
+    // A speed by its name alone, in which values are missing: no pulses, and no speed of a shaft.
+    for (mark, told) in [(0.0, "stands still"), (-1.0, "stands still"), (32_767.0, "which no shaft does")] {
+        let marked = (0..10_000).map(|n| if n % 1000 == 999 { mark } else { 1200.0 }).collect();
+        let why = of(&Channel::held("n_rpm", marked), 12_800.0, 1.0).unwrap_err().to_string();
+        assert!(why.contains(told), "{mark}: {why}");
+    }
 }
 
 /// It had to be a whole number.

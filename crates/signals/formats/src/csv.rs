@@ -28,7 +28,7 @@ use crate::units;
 use crate::{Channel, Error, Recording, Result, clock_columns};
 
 /// Lines before the first row of numbers, at most.
-const PREAMBLE: usize = 200;
+const PREAMBLE: usize = 1000;
 /// Lines that show how the table is written.
 const SAMPLE: usize = 60;
 /// Samples handed on at a time.

@@ -129,8 +129,11 @@ impl Found {
         if let Ok(attributes) = group.attrs() {
             self.rates.extend(rates(&attributes, prefix));
         }
-        let (sets, names) = match (group.iter_datasets(), group.groups()) {
-            (Ok(sets), Ok(groups)) => (sets.map(|(name, set)| (name, Ok(set))).collect(), groups),
+        let (sets, groups) = match (group.iter_datasets(), group.iter_groups()) {
+            (Ok(sets), Ok(groups)) => (
+                sets.map(|(name, set)| (name, Ok(set))).collect(),
+                groups.map(|(name, group)| (name, Ok(group))).collect::<Vec<_>>(),
+            ),
             (Err(why), _) | (_, Err(why)) => {
                 // A link to another object, or a damaged one, spoils the library's list of a group; each name
                 // alone can be opened.
@@ -146,8 +149,9 @@ impl Found {
                 }
                 let opened = objects.into_iter().map(|of| (group.dataset(&of.name), of.name));
                 let (sets, groups): (Vec<_>, Vec<_>) = opened.partition(|(set, _)| set.is_ok());
-                let names = groups.into_iter().map(|(_, name)| name).collect();
-                (sets.into_iter().map(|(set, name)| (name, set)).collect::<Vec<_>>(), names)
+                let groups = groups.into_iter().map(|(_, name)| (group.group(&name), name));
+                let groups = groups.map(|(group, name)| (name, group)).collect();
+                (sets.into_iter().map(|(set, name)| (name, set)).collect::<Vec<_>>(), groups)
             }
         };
         for (name, set) in sets {
@@ -159,12 +163,12 @@ impl Found {
                 self.notes.push(left_out(&full, &why.to_string()));
             }
         }
-        for name in names {
+        for (name, group) in groups {
             // Data referenced by cells and objects have no names.
             if trail.len() >= DEEPEST || name.starts_with('#') {
                 continue;
             }
-            match group.group(&name) {
+            match group {
                 Ok(group) => {
                     let prefix = format!("{prefix}{name}.");
                     trail.push(name);

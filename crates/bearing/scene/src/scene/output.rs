@@ -49,11 +49,11 @@ group! {
 group! {
     /// Limits of the guards, which are checked at every sample (`guards.rs`).
     pub struct GuardsScene {
-        /// Imbalance of energy above which the run carries a warning [%], over the larger of the peak strain
-        /// energy (of a reduced run, of the most that rings and contacts have stored) and of the heat.
-        pub energy_warning_percent: f64 = 0.5, positive(1e6);
-        /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its
-        /// heat, too.
+        /// Imbalance of energy above which the run carries a warning when it ends [%], over what contacts dissipate
+        /// (where they dissipate nothing, over the peak strain energy).
+        pub energy_warning_percent: f64 = 10.0, positive(1e6);
+        /// Imbalance over the peak strain energy (of a reduced run, the most that rings and contacts have stored)
+        /// above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat, too.
         pub energy_stop_percent: f64 = 25.0, positive(1e6);
         /// Hourglass energy over strain energy above which the run carries a warning [%].
         pub hourglass_warning_percent: f64 = 10.0, positive(1e6);

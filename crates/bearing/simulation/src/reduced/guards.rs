@@ -184,16 +184,6 @@ impl Guards {
                 self.advice()
             ));
         }
-        // Relative to the larger of both: over a long run the heat grows beyond any constant limit.
-        let of_larger = percent.min(100.0 * off.of_heat);
-        if of_larger > limits.energy_warning_percent && !info.guards.energy_warned {
-            info.guards.energy_warned = true;
-            info.warn(Topic::Energy.warning(format!(
-                "energy was off by {percent:.3} % of the most that rings and contacts have stored and {} \
-                 {when}: take a smaller `model.step_us`",
-                off.share_of_heat()
-            )));
-        }
         None
     }
 

@@ -55,7 +55,7 @@ impl Setup {
             loop_cpu_s: 0.0,
             setup_s: self.wall_s,
             resumed_at_s: Vec::new(),
-            energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0, heat_j: 0.0 },
+            energy: EnergyInfo::default(),
             guards: GuardInfo::default(),
             expected_support_n: expected_support(scene, self.carried_mass),
             notes: self.notes,

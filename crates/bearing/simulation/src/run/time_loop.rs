@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use serde::{Serialize, de::DeserializeOwned};
 use stribeck_system::{Ledger, Workers};
+use stribeck_theory::duty::Duty;
 
 use crate::error::Error;
 use crate::run::{
@@ -84,6 +85,10 @@ fn columns(scene: &ResolvedScene) -> Vec<&'static str> {
     COLUMNS.into_iter().chain(film).collect()
 }
 
+fn passages_a_turn(scene: &ResolvedScene) -> f64 {
+    scene.rollers as f64 * scene.inner_race_radius / (scene.inner_race_radius + scene.outer_race_radius)
+}
+
 /// A run in its time loop.
 pub struct Run<M> {
     /// Content of `run.json`.
@@ -97,6 +102,10 @@ pub struct Run<M> {
     energy: TraceWriter,
     /// Whether the ledger has a column for oil.
     oiled: bool,
+    duty: Duty,
+    /// Elements that pass a place of the outer ring in a turn of the inner one against it, without slip.
+    passages_a_turn: f64,
+    energy_warning_percent: f64,
 }
 
 /// Time of the last checkpoint, and how long writing it took.
@@ -132,6 +141,9 @@ impl<M: Motion> Run<M> {
             trace: TraceWriter::create(dir.trace(), &channels::names(scene))?,
             energy: TraceWriter::create(dir.energy(), &columns(scene))?,
             oiled: scene.written.film.is_some(),
+            duty: scene.duty.clone(),
+            passages_a_turn: passages_a_turn(scene),
+            energy_warning_percent: scene.written.guards.energy_warning_percent,
             identity: identity(&scene.written),
             channels: Channels::of(scene),
             row: Vec::new(),
@@ -151,6 +163,9 @@ impl<M: Motion> Run<M> {
             trace: TraceWriter::resume(dir.trace(), &channels::names(scene), rows)?,
             energy: TraceWriter::resume(dir.energy(), &columns(scene), rows)?,
             oiled: scene.written.film.is_some(),
+            duty: scene.duty.clone(),
+            passages_a_turn: passages_a_turn(scene),
+            energy_warning_percent: scene.written.guards.energy_warning_percent,
             identity: identity(&scene.written),
             channels: Channels::of(scene),
             row: Vec::new(),
@@ -232,10 +247,24 @@ impl<M: Motion> Run<M> {
         if self.info.status == Status::Running {
             self.info.status = Status::Complete;
         }
+        self.judge_energy();
         self.trace.finish()?;
         self.energy.finish()?;
         dir.write_info(&self.info)?;
         Ok(self.info)
+    }
+
+    /// Warns of an imbalance, once the passages say what it is compared with.
+    fn judge_energy(&mut self) {
+        self.info.take_back(Topic::Energy);
+        let (energy, limit) = (&self.info.energy, self.energy_warning_percent);
+        if energy.passages < 1.0 || 100.0 * energy.share() <= limit {
+            return;
+        }
+        let field = if self.info.reduced.is_some() { "model.step_us" } else { "solver.time_step_factor" };
+        let words =
+            format!("energy is off by {} (limit {limit} %): take a smaller `{field}`", energy.in_words());
+        self.info.warn(Topic::Energy.warning(words));
     }
 
     /// Brings samples, checkpoint and `run.json` to disk: a run that is killed continues from here.
@@ -268,7 +297,10 @@ impl<M: Motion> Run<M> {
 
     fn write(&mut self, l: &Ledger) -> Result<(), Error> {
         [self.info.energy.peak_strain_j, self.info.energy.max_relative_error] = self.motion.balance();
-        self.info.energy.heat_j = l.friction + l.damping + l.contact_damping + l.film;
+        let energy = &mut self.info.energy;
+        energy.contact_heat_j = l.friction + l.contact_damping + l.film;
+        energy.heat_j = energy.contact_heat_j + l.damping;
+        energy.passages = self.passages_a_turn * self.duty.relative_turns(l.time).abs();
         let mut row = vec![
             l.time,
             l.kinetic,

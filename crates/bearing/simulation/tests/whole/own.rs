@@ -42,8 +42,7 @@ fn issue_ten_own_bearings_run_in_their_modes() {
         assert_eq!((info.status, &info.stop_reason), (Status::Complete, &None), "{name}");
         let cage = scene.resolve().cage.expect("a cage");
         assert!(info.guards.cage_offset_m < cage.thickness, "{name}: {} m", info.guards.cage_offset_m);
-        let energy = info.energy.of_larger();
-        assert!(energy < 0.05, "{name}: energy is off by {energy}");
+        assert!(info.energy.share() < 0.05, "{name}: energy is off by {}", info.energy.in_words());
     });
 }
 

@@ -35,7 +35,12 @@ fn info(status: Status) -> RunInfo {
         cpu_s: 2.0,
         loop_cpu_s: 2.0,
         setup_s: 0.5,
-        energy: EnergyInfo { max_relative_error: 1e-3, peak_strain_j: 2.0, heat_j: 3.0 },
+        energy: EnergyInfo {
+            max_relative_error: 1e-3,
+            peak_strain_j: 2.0,
+            heat_j: 3.0,
+            ..EnergyInfo::default()
+        },
         guards: crate::run_info::GuardInfo::default(),
         expected_support_n: 50_100.0,
         resumed_at_s: vec![1e-5],

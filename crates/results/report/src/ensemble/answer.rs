@@ -95,11 +95,8 @@ fn predicted(summary: &EnsembleSummary) -> String {
     }
     let short = !families.is_empty() && families.iter().all(|f| f.number("lead").is_none());
     let tone = if short { " The records are too short to tell families of facet lines." } else { "" };
-    let [of_heat, of_strain] =
-        ["energy.share_of_heat", "energy.max_relative_error"].map(|name| summary.number(name));
-    let balance = of_heat.map(|s| (s, "the heat")).or(of_strain.map(|s| (s, "the peak strain energy")));
-    let energy = balance.map_or(String::new(), |(s, of)| {
-        format!(" Energy is conserved to {:.2} % of {of} in the worst start.", 100.0 * s.most)
+    let energy = summary.number("energy.share_of_contacts").map_or(String::new(), |s| {
+        format!(" Energy is off by {:.2} % of what contacts dissipate in the worst start.", 100.0 * s.most)
     });
     format!("Adjusted to nothing: {}.{tone}{energy}", said.join("; "))
 }

@@ -69,12 +69,7 @@ pub(super) fn main(summary: &EnsembleSummary) -> Markup {
         return html! {};
     }
     let sensor = summary.ensemble.text("levels.sensor").unwrap_or("none");
-    // Energy is balanced against the heat where that is more than the strain energy.
-    let of_heat = summary.number("energy.share_of_heat").is_some();
-    let named = Summary::quantities().into_iter().filter(|quantity| {
-        let replaced = of_heat && quantity.path == "energy.max_relative_error";
-        quantity.words.is_some() && !quantity.is_listed && !replaced
-    });
+    let named = Summary::quantities().into_iter().filter(|of| of.words.is_some() && !of.is_listed);
     let named: Vec<Quantity> = named.collect();
     html! {
         div class="scroll" {

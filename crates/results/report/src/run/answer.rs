@@ -393,7 +393,7 @@ fn physics(summary: &Summary) -> String {
 
 /// Limits of the numbers, one paragraph a topic.
 fn trust(summary: &Summary) -> Vec<String> {
-    let EnergyFinding { max_relative_error, share_of_heat, .. } = summary.energy;
+    let EnergyFinding { max_relative_error, share_of_contacts, missing_a_passage_j, .. } = summary.energy;
     let load = summary
         .load
         .relative_error
@@ -402,7 +402,10 @@ fn trust(summary: &Summary) -> Vec<String> {
         "Peaks are those of one start: another start angle moves them by tens of per cent. They also \
          depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
             .to_owned(),
-        format!("Energy is conserved to {}{load}.", imbalance(max_relative_error, share_of_heat)),
+        format!(
+            "Energy is conserved to {}{load}.",
+            imbalance(missing_a_passage_j, share_of_contacts, max_relative_error)
+        ),
     ];
     said.extend(summary.spectrum.as_ref().map(|s| {
         let good = format!("Frequencies are good to {} Hz, one over", significant(s.resolution_hz, 2));

@@ -38,7 +38,7 @@ fn figures(run: &Run) -> Result<Vec<Figure>, Error> {
     )
     .synced("time")
     .caption(format!(
-        "What load and drive supply is found again as motion, strain and heat, within {}.",
+        "What load and drive supply is found again as motion, strain and heat, but for {}.",
         run.info.energy.in_words()
     ))
     .note("Friction, damping and contact damping only grow; kinetic and strain energy go up and down.");
@@ -49,23 +49,5 @@ fn figures(run: &Run) -> Result<Vec<Figure>, Error> {
             ledger = ledger.with(Series::listed(name, colour, time.to_vec(), change));
         }
     }
-    let mut figures = vec![ledger];
-    if let Some(error) = energy.get("relative_error") {
-        let percent = error.iter().map(|e| 100.0 * e).collect();
-        figures.push(
-            Figure::new(
-                "energy-error",
-                "Energy imbalance",
-                Axis::si("Time", "s"),
-                Axis::plain("Imbalance / peak strain energy", "%"),
-            )
-            .synced("time")
-            .with(Series::listed("imbalance", Colour::Red, time.to_vec(), percent))
-            .caption(format!(
-                "The largest imbalance is {}; a run stops when its limit is passed.",
-                run.info.energy.in_words()
-            )),
-        );
-    }
-    Ok(figures)
+    Ok(vec![ledger])
 }

@@ -54,7 +54,6 @@ fn behaves_the_page_holds_every_figure_and_needs_no_network() {
         "spin",
         "orbit",
         "energy",
-        "energy-error",
     ] {
         assert!(page.contains(&format!("<figure id=\"{figure}\"")), "{figure} is not in the page");
         let picture = read(folder.path(), &format!("figures/{figure}.svg"));

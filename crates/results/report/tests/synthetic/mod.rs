@@ -67,7 +67,12 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
         loop_cpu_s: 590.0,
         setup_s: 4.0,
         resumed_at_s: Vec::new(),
-        energy: EnergyInfo { max_relative_error: 2.5e-3, peak_strain_j: 0.8, heat_j: 0.4 },
+        energy: EnergyInfo {
+            max_relative_error: 2.5e-3,
+            peak_strain_j: 0.8,
+            heat_j: 0.4,
+            ..EnergyInfo::default()
+        },
         guards: Default::default(),
         expected_support_n: SUPPORT_N,
         notes: Vec::new(),

@@ -16,6 +16,7 @@ use crate::families::family::{Family, SOUND_DEPTHS};
 use crate::families::limits::{ALPHA, IMPACT};
 use crate::families::machine_lines::OwnLines;
 use crate::families::unrelated::SLIP;
+use crate::record::bands::LOWEST;
 use crate::record::pass::Record;
 use crate::{Defect, quantities};
 
@@ -60,6 +61,28 @@ pub(crate) fn with_power(
     Family { limit, shown_over_rms, ..family }
 }
 
+/// Eighths of the range in which the end of the sensor's band, or of a filter's, is sought.
+const EIGHTHS: u32 = 8;
+/// By how much the density falls from one eighth to the next at such an end [dB]. Chosen while looking at all measured
+/// records at hand: machines alone reach 21, anti-aliasing filters of CWRU 26 to 29.
+const CUT_DB: f64 = 24.0;
+
+/// Where the record ends: beyond, a filter, the sensor or interpolation has taken impacts away as it has all else, and that
+/// they would stand there above next to nothing says nothing [Hz].
+fn end_hz((hz, density): &(Vec<f64>, Vec<f64>)) -> f64 {
+    let highest_hz = hz.last().copied().unwrap_or(0.0);
+    let end = |n: u32| highest_hz * f64::from(n) / f64::from(EIGHTHS);
+    let median_db = |n: u32| {
+        let low_hz = end(n).max(LOWEST * highest_hz);
+        let inside = hz.iter().zip(density).filter(|(hz, _)| (low_hz..end(n + 1)).contains(*hz));
+        let mut inside: Vec<f64> = inside.map(|(_, s)| *s).collect();
+        inside.sort_by(f64::total_cmp);
+        10.0 * inside.get(inside.len() / 2).copied().unwrap_or(0.0).log10()
+    };
+    let cut = (1..EIGHTHS).find(|n| median_db(n - 1) - median_db(*n) > CUT_DB);
+    cut.map_or(f64::INFINITY, end)
+}
+
 /// The least impacts of a family that any band could have shown.
 fn limit(
     name: Defect,
@@ -77,7 +100,13 @@ fn limit(
         let peak = (2.0 * power / (comb_hz * ring_s * mean_power(name))).sqrt();
         Some(Limit { peak, over_rms: peak / record.health.rms, band_hz: (band.low_hz, band.high_hz) })
     };
-    bands.iter().filter_map(of).min_by(|a, b| a.peak.total_cmp(&b.peak))
+    let end_hz = end_hz(&record.density);
+    // Bands begin at eighths, but for rounding.
+    bands
+        .iter()
+        .filter(|(band, _)| band.low_hz < 0.99 * end_hz)
+        .filter_map(of)
+        .min_by(|a, b| a.peak.total_cmp(&b.peak))
 }
 
 /// Peak of the impacts that modulate a band as deeply as a family does, over the root mean square of the record.

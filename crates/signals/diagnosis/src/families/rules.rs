@@ -298,7 +298,7 @@ fn something_else_strikes_louder(family: &Family, case: &Case<'_>) -> Option<Str
     let other = louder.find(|other| other.height_db > family.height_db)?;
     (family.p_value >= BESIDE_OTHERS && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but something that is no family of this bearing impacts louder in another band, at \
+            "it is there, but something that is no family of this bearing has stronger impacts in another band, at \
              {:.3} times the shaft, and healthy bearings show as much with a probability of {}",
             other.order,
             probability(family.p_value)
@@ -384,7 +384,7 @@ fn claimed(family: Family, case: &Case<'_>) -> Family {
     Family { claimed: true, not_told_apart_from, reason: Reason::Decided(why), ..family }
 }
 
-/// A family that is claimed by what the machine showed when it was sound.
+/// A family that is claimed by what the machine showed when it was healthy.
 fn beyond_sound_records(family: Family, sound: &BesideSound) -> Family {
     let why = format!(
         "{} harmonics stand, {:.1} dB above combs at other spacings, where the highest of {} records of the healthy machine \

@@ -1,4 +1,4 @@
-//! Records of the same machine when it was sound, and what they say of a family.
+//! Records of the same machine when it was healthy, and what they say of a family.
 //!
 //! The score of a record is how far the family that does so most stands above unrelated combs. Scores of sound
 //! records of one machine are exchangeable: by their order alone, a further one exceeds all of n with a

@@ -21,7 +21,7 @@ const MISSED: f64 = 2.0;
 pub(crate) struct SpallLength {
     /// From two events a passage [mm].
     pub(crate) length_mm: Option<Interval>,
-    /// Of a spall longer than half of the distance of two elements that would impact in the same rhythm [mm].
+    /// Of a spall longer than half of the distance of two elements that would make impacts in the same rhythm [mm].
     pub(crate) otherwise_mm: Option<Interval>,
     /// Time between them [ms].
     pub(crate) spacing_ms: Option<f64>,
@@ -94,7 +94,7 @@ fn of_two_events(
          the {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in \
          {housing} presses the element together{advice}. It holds for a spall shorter than half of the \
          {apart_mm:.1} mm between two elements: one of {:.1} mm ({:.1} to {:.1}), whose exit and the entry of \
-         the next element are as far apart, would impact in the same rhythm, and the record does not say which",
+         the next element are as far apart, would make impacts in the same rhythm, and the record does not say which",
         loading.load_n.0, loading.load_n.1, otherwise.value, otherwise.low, otherwise.high
     );
     SpallLength {
@@ -111,7 +111,7 @@ fn of_one_event(below_mm: f64, apart_mm: f64) -> SpallLength {
     let note = format!(
         "no second event follows each impact: one of entry and exit is heard, the record does not say which, \
          and it gives no length. A spall that is shallow, or crossed under so heavy a load that no element \
-         comes free, or whose entry is soft, impacts once whatever its length, up to the {apart_mm:.1} mm \
+         comes free, or whose entry is soft, makes one impact whatever its length, up to the {apart_mm:.1} mm \
          between two elements"
     );
     SpallLength { below_mm: Some(below_mm), note, ..SpallLength::default() }

@@ -9,7 +9,7 @@ use crate::Error;
 const LEVELS: u32 = 3;
 /// Lower end of the lowest bands as a part of half the sample rate: below lie the shaft and its multiples.
 pub(crate) const LOWEST: f64 = 0.02;
-/// Highest frequency of the envelope spectra [Hz]; bearings impact more slowly.
+/// Highest frequency of the envelope spectra [Hz]; bearings make impacts more slowly.
 pub(crate) const HIGHEST_HZ: f64 = 4_000.0;
 
 /// The bands of a channel over the period of a frequency [Hz]: the samples are read again.

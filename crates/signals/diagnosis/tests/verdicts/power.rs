@@ -1,5 +1,7 @@
 //! What a record could have shown, and what it then lets one conclude: made records.
 
+use std::f64::consts::PI;
+
 use stribeck_diagnosis::joint::Joint;
 use stribeck_diagnosis::pool::Pool;
 use stribeck_diagnosis::series::Series;
@@ -132,6 +134,36 @@ fn issue_one_channel_twice_is_one_witness() {
     let joint = Joint::of(&[("1".to_owned(), &one), ("2".to_owned(), &one)]).unwrap();
     assert!(joint.notes.iter().any(|note| note.contains("`1` and `2` hold the same samples")), "{joint:?}");
     assert_eq!(joint.channels, ["1"]);
+    // Later, turned round, amplified, with a little noise.
+    let mut noise = Noise::new(3);
+    let copy = one.beginning.iter().skip(37).map(|x| -0.5 * x + 1e-4 * noise.uniform()).collect();
+    let copy = analysis(copy, RATE_HZ, &machine(1200.0));
+    let joint = Joint::of(&[("1".to_owned(), &one), ("2".to_owned(), &copy)]).unwrap();
+    assert_eq!(joint.channels, ["1"]);
+    let other = analysis(coloured(6, SAMPLES), RATE_HZ, &machine(1200.0));
+    assert_eq!(Joint::of(&[("1".to_owned(), &one), ("2".to_owned(), &other)]).unwrap().channels, ["1", "2"]);
+}
+
+/// Where a filter has taken everything away, impacts would stand above next to nothing, and no machine makes them there.
+#[test]
+fn issue_what_a_filter_took_away_shows_no_healthy_raceway() {
+    const TAPS: usize = 256;
+    // Half of the range passes: a sinc under a Hann window.
+    let tap = |n: usize| {
+        let t = n as f64 - 0.5 * TAPS as f64;
+        let sinc = if t == 0.0 { 0.5 } else { (0.5 * PI * t).sin() / (PI * t) };
+        sinc * (PI * n as f64 / TAPS as f64).sin().powi(2)
+    };
+    let taps: Vec<f64> = (0..=TAPS).map(tap).collect();
+    let noise = white(7, SAMPLES + TAPS);
+    let filtered: Vec<f64> =
+        noise.windows(TAPS + 1).map(|part| part.iter().zip(&taps).map(|(x, tap)| x * tap).sum()).collect();
+    let all = judged(noise, &machine(1200.0));
+    assert_eq!(all.conclusion.raceways.answer, Answer::CannotTell, "{all:#?}");
+    let found = judged(filtered, &machine(1200.0));
+    assert_eq!(found.conclusion.raceways.answer, Answer::CannotTell, "{found:#?}");
+    let (_, high_hz) = found.conclusion.raceways.limit_band_hz.unwrap();
+    assert!(high_hz <= 0.26 * RATE_HZ, "{found:#?}");
 }
 
 /// A 6205 whose outer ring turns with its shaft standing: the cage at half the speed times 1 + d/D.

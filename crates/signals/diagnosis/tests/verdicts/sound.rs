@@ -37,7 +37,7 @@ fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
         findings.families[0].is_there() && findings.verdict.starts_with("No defect of a raceway whose"),
         "{findings:#?}"
     );
-    // Where this machine showed nothing of it when it was sound, it is a defect; with one healthy record that
+    // Where this machine showed nothing of it when it was healthy, it is a defect; with one healthy record that
     // shows as much, or with too few of them, it is not.
     let score_db = findings.score_db.unwrap();
     let beside = |sound_db: &[f64]| {

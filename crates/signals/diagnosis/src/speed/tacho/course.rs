@@ -75,6 +75,12 @@ const UNITS: [(&[&str], f64); 4] = [
     (&["deg/s", "°/s"], 1.0 / 6.0),
 ];
 
+/// Most volts that pulses of a wheel have.
+const PULSES_V: f64 = 30.0;
+
+/// Factor between the speeds of two samples that no shaft reaches.
+const JUMP: f64 = 3.0;
+
 /// Largest speed of a shaft [1/min].
 const FASTEST: f64 = 1e6;
 
@@ -92,8 +98,8 @@ pub(super) fn of_speed(channel: &Channel, rate_hz: f64) -> Result<Option<Turns>,
     let sign = there().next().map_or(1.0, |(_, x)| if x < 0.0 { -1.0 } else { 1.0 });
     let stands = there().find(|(_, x)| sign * x <= STANDS * most);
     match stands {
-        // A name alone may be that of pulses.
-        Some(_) if !of_unit => return Ok(None),
+        // A name alone may be that of pulses, which have some volts.
+        Some(_) if !of_unit && most < PULSES_V => return Ok(None),
         Some((at, _)) => {
             return Err(Error::NoSignal(format!(
                 "`{name}` says that the shaft stands still at {:.4} s: cut the record to a part in which it \
@@ -106,6 +112,14 @@ pub(super) fn of_speed(channel: &Channel, rate_hz: f64) -> Result<Option<Turns>,
     if most == 0.0 || most > FASTEST {
         return Err(Error::NoSignal(format!(
             "`{name}` holds speeds up to {most} 1/min: a shaft's lie above 0 and below {FASTEST}"
+        )));
+    }
+    let jumps = there().zip(there().skip(1)).find(|((_, a), (_, b))| a / b > JUMP || b / a > JUMP);
+    if let Some(((_, from), (at, to))) = jumps {
+        return Err(Error::NoSignal(format!(
+            "`{name}` goes from {from:.1} to {to:.1} 1/min from one sample to the next at {:.4} s, which no shaft does: \
+             remove such marks from it",
+            at as f64 / rate_hz
         )));
     }
     // A value that is missing is that before it; the first ones are those behind them.
