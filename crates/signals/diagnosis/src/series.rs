@@ -194,9 +194,13 @@ impl SeriesFamily {
             .map(|r| family(*r, name).map(Family::score_db).filter(|db| db.is_finite()))
             .collect();
         let claiming = count(&claims);
-        // Where all claim it, it was there before the first; and it begins no later than a record that claims it.
+        // Where all claim it, it was there before the first. It begins no later than a record that claims it, and among the
+        // last ones no beginning is told from another.
         let first = records.iter().skip(sound).position(|r| family(*r, name).is_some_and(|f| f.claimed));
-        let bounded = |onset: &Onset| first.is_none_or(|first| onset.record <= sound + first + 1);
+        let bounded = |onset: &Onset| {
+            let at = first.map(|first| sound + first);
+            at.is_none_or(|at| onset.record <= at + 1 && at + LEAST_AFTER <= records.len())
+        };
         let onset =
             if claimed && claiming < later.len() { onset(&height_db, sound).filter(bounded) } else { None };
         Self {
@@ -460,7 +464,8 @@ fn words(family: &SeriesFamily, sound: usize) -> String {
     };
     let by = match (claiming, height_db.len() - sound) {
         (claiming, of) if *claiming == of => {
-            format!("all {of} records that are not of the healthy machine claim it")
+            let of_those = if sound > 0 { " that are not of the healthy machine" } else { "" };
+            format!("all {of} records{of_those} claim it")
         }
         (0, _) if pooled.is_some() => {
             format!(

@@ -68,7 +68,8 @@ fn behaves_a_later_field_changes_the_hash_only_where_it_is_used() {
         let scene = format!(
             "(name: \"singh2014\", mesh: (roller_copies: translated), cage: (pocket: {pocket}), film: \
              {film}, solver: (time_step_factor: 0.95, \
-             mass_damping_per_s: 5000.0, structural_damping: {structural}, {more}))"
+             mass_damping_per_s: 5000.0, structural_damping: {structural}, {more}), \
+             guards: (energy_warning_percent: 0.5))"
         );
         parse(&scene).expect("valid").hash()
     };
