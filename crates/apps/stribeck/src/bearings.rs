@@ -34,7 +34,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
             }
             Err(why) => match catalogue::beginning_with(name).map_err(|why| anyhow!(why))? {
                 none if none.is_empty() => return Err(anyhow!(why)),
-                some => some,
+                some => some.into(),
             },
         },
     };

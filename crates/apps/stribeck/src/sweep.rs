@@ -83,7 +83,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Some(file) if options.set.is_empty() => {
             let file = place.locate(file);
             ensure!(
-                !is_scene(&file),
+                readable(Some(&file), &[] as &[&str]).is_err(),
                 "`{0}` is a scene: say which of its fields varies, as in `{1} sweep {0} --set \
                  operation.load_n=1000,2000,4000`. A single run is `{1} simulate {0}`",
                 shown(&file),
@@ -98,10 +98,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         ),
         _ => vary(options, place),
     }
-}
-
-fn is_scene(file: &Path) -> bool {
-    Campaign::read(file).is_err() && readable(Some(file), &[] as &[&str]).is_ok()
 }
 
 /// Runs a scene with the values of `--set`.

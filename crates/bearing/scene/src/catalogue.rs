@@ -1,6 +1,7 @@
 //! Bearings by name: those of the user's own, in `bearings.ron` in the working folder or in `stribeck` below
 //! that of the configuration, and those of the catalogue; and the assumptions that a bearing rests on.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use stribeck_theory::catalogue::{self, ADVICE, Boundary, CatalogueBearing, Element, plain};
@@ -51,15 +52,14 @@ const EXAMPLE: &str = "[(name: \"mine\", element: roller, elements: 16, diameter
 ///
 /// # Errors
 /// Words on a file of the user's own that cannot be read.
-pub fn known() -> Result<Vec<CatalogueBearing>, String> {
-    let mut bearings = bearings()?;
-    bearings.extend(catalogue::all());
-    Ok(bearings)
+pub fn known() -> Result<Cow<'static, [CatalogueBearing]>, String> {
+    let own = bearings()?;
+    Ok(if own.is_empty() { catalogue::all().into() } else { [&own, catalogue::all()].concat().into() })
 }
 
 /// Those of [`known`] whose names begin as `text` does: `NU`, `62`.
 pub fn beginning_with(text: &str) -> Result<Vec<CatalogueBearing>, String> {
-    Ok(catalogue::beginning_with(text, known()?))
+    Ok(catalogue::beginning_with(text, &known()?))
 }
 
 /// A bearing by its name among [`known`], by its numbers, or both, as [`CatalogueBearing::parse`].
@@ -98,8 +98,8 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
         return bearing.assumed.iter().map(|what| assumption(*what, bearing)).chain(own_balls).collect();
     }
     // A file that can no longer be read does not concern the scene.
-    let bearings = self::known().unwrap_or_else(|_| catalogue::all());
-    let Some(known) = bearings.into_iter().find(|known| known.name == bearing.designation) else {
+    let bearings = self::known().unwrap_or_else(|_| catalogue::all().into());
+    let Some(known) = bearings.iter().find(|known| known.name == bearing.designation) else {
         return Vec::new();
     };
     let (name, length) = (&known.name, bearing.thickness_mm);
@@ -289,7 +289,7 @@ mod tests {
         let orders = bearings[0].orders().expect("16 rollers");
         assert!((orders.bpfo - 8.0 * (1.0 - 9.0 / 68.5)).abs() < 1e-12);
         assert!(bearings[0].source.ends_with(NAME));
-        let found = CatalogueBearing::parse_among("Mine-2RS", || Ok(bearings), "").expect("known");
+        let found = CatalogueBearing::parse_among("Mine-2RS", || Ok(bearings.into()), "").expect("known");
         assert_eq!(found.name, "mine");
     }
 

@@ -113,7 +113,7 @@ impl Scene {
             return Element::Ball;
         }
         let name = &self.bearing.designation;
-        let known = || crate::catalogue::known().unwrap_or_else(|_| catalogue::all());
+        let known = || crate::catalogue::known().unwrap_or_else(|_| catalogue::all().into());
         let is_ball = !name.is_empty()
             && known().iter().any(|known| known.name == *name && known.element == Element::Ball);
         if is_ball { Element::Ball } else { Element::Roller }

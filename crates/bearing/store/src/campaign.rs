@@ -314,13 +314,14 @@ fn variants(
     let mut numbers: Vec<split::Drawn> = Vec::with_capacity(runs.capacity());
     let mut unreadable: Vec<Problem> = Vec::new();
     let mut rows_to_look_at = MOST_LOOKED_AT;
+    let paper = Scene::singh2014();
     // Findings that every variant so far has, in fields that do not vary.
     let mut common: Option<Vec<Problem>> = None;
     for (row, values) in rows.values.iter().enumerate() {
         let set = file.overrides(rows, row);
         let scene = match base {
             Some(path) => Scene::read_with(path, &set),
-            None => Scene::singh2014().with_overrides(&set),
+            None => paper.with_overrides(&set),
         };
         let problems = scene.as_ref().err().map_or(&[][..], SceneError::problems);
         for problem in problems.iter().filter(|problem| problem.is_unreadable) {

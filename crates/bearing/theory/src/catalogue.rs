@@ -7,6 +7,7 @@
 mod names;
 mod tables;
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -68,7 +69,7 @@ pub use names::{beyond_a_plane, plain};
 pub use tables::{PAPER, all};
 
 /// Those among `known` whose names begin as `text` does: `NU`, `62`.
-pub fn beginning_with(text: &str, known: Vec<CatalogueBearing>) -> Vec<CatalogueBearing> {
+pub fn beginning_with(text: &str, known: &[CatalogueBearing]) -> Vec<CatalogueBearing> {
     names::beginning_with(text, known)
 }
 
@@ -204,7 +205,7 @@ impl CatalogueBearing {
     /// # Errors
     /// Parts that are not understood, with the valid names and numbers.
     pub fn parse(text: &str) -> Result<Self, String> {
-        Self::parse_among(text, || Ok(all()), ADVICE)
+        Self::parse_among(text, || Ok(all().into()), ADVICE)
     }
 
     /// As [`parse`](Self::parse), by a name among those of `known`, with other advice where it is unknown.
@@ -213,7 +214,7 @@ impl CatalogueBearing {
     /// As [`parse`](Self::parse), and those of `known`, which is asked for a name alone.
     pub fn parse_among(
         text: &str,
-        known: impl FnOnce() -> Result<Vec<Self>, String>,
+        known: impl FnOnce() -> Result<Cow<'static, [Self]>, String>,
         advice: &str,
     ) -> Result<Self, String> {
         let mut parts = text.split(',').map(str::trim).filter(|part| !part.is_empty()).peekable();
@@ -222,7 +223,7 @@ impl CatalogueBearing {
         }
         let named = match parts.peek() {
             Some(name) if !name.contains('=') => {
-                let found = known().and_then(|known| names::find(name, known, advice));
+                let found = known().and_then(|known| names::find(name, &known, advice));
                 parts.next();
                 Some(found?)
             }

@@ -151,11 +151,7 @@ impl OneOfMany {
         self.numbers.extend(of_table.filter_map(|q| Some((q.path.clone(), q.number(summary)?))));
         if let Some(families) = summary.pointer("/diagnosis/families") {
             let families = Vec::<DiagnosedFamily>::deserialize(families).map_err(Error::Summary)?;
-            let level = |family: &DiagnosedFamily| {
-                let name = format!("diagnosis.{}_level_db", family.name.name().to_lowercase());
-                Some((name, family.level_db?))
-            };
-            self.numbers.extend(families.iter().filter_map(level));
+            self.numbers.extend(families.iter().filter_map(|of| Some((level_column(of.name), of.level_db?))));
             self.row.claimed = Some(claimed(&families));
         }
         // An overflow is no number, and a column without numbers is none.
@@ -175,6 +171,11 @@ impl OneOfMany {
         let is_name = NAMES.contains(&field.rsplit('.').next().unwrap_or(field));
         self.values.get(at).filter(|_| !is_name)?.parse().ok()
     }
+}
+
+/// Name of the number of a summary that is the level of a family.
+pub fn level_column(family: Defect) -> String {
+    format!("diagnosis.{}_level_db", family.name().to_lowercase())
 }
 
 /// Families that are claimed, joined by `+`; `undecided` where the machine's own lines hide a raceway's.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stribeck_analysis::quantity::{columns, in_markdown, stem_and_unit};
-use stribeck_analysis::runs::{EventRow, OneOfMany, RunRow, SignalRow, Truth};
+use stribeck_analysis::runs::{EventRow, OneOfMany, RunRow, SignalRow, Truth, level_column};
 use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::Defect;
 use stribeck_diagnosis::quantity::Entry;
@@ -35,19 +35,14 @@ pub(super) fn text(campaign: &Campaign, rows: &[OneOfMany], written: &Written) -
     }
     page += &format!(
         "\n## Tables\n\n\
-         `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why, and \
-         `warnings` what the guards of a run have warned of, a line each. `{EVENTS}` has a row for each \
-         passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene \
-         of a variant, in each fault of each bearing, so no scene and no start of it stands in two parts; \
-         further values may move a scene to another part.\n\n\
-         Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`, which a profile \
-         may vary. A fault strikes once a passage; waves, roughness and other diameters are deviations. \
-         Size, depth and angle at the start are those of the first fault of the scene that has a length. \
-         `bpfo_hz`, `bpfi_hz`, `bsf_hz` and `ftf_hz` are kinematic, without slip. `scene.*` are the fields \
-         that vary, `summary.*` what the analysis of each run found (docs/THEORY.md, §7, says how). Of an \
-         event, `expected_*` is when the roller's centre is over an edge without slip, `path_*` when the \
-         recorded one is, and `entry_ms` and `exit_ms` are read from its force. What depends on machine or \
-         interruptions is only in the folders of the runs.\n\n## Limits\n\n",
+         `{RUNS}` has a row for each run, also for those that failed, `{EVENTS}` one for each passage of a \
+         roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene of a variant, \
+         in each fault of each bearing, so no scene and no start of it stands in two parts; further values \
+         may move a scene to another part.\n\n\
+         Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`. A fault strikes \
+         once a passage; waves, roughness and other diameters are deviations. `scene.*` are the fields that \
+         vary, `summary.*` what the analysis of each run found (docs/THEORY.md, §7, says how). What depends \
+         on machine or interruptions is only in the folders of the runs.\n\n## Limits\n\n",
         if written.signals.is_empty() {
             String::new()
         } else {
@@ -131,9 +126,7 @@ fn meanings() -> BTreeMap<String, String> {
     for quantity in Summary::quantities() {
         let about = quantity.about_in_markdown();
         if quantity.path == "diagnosis.families.level_db" {
-            all.extend(Defect::ALL.map(|of| {
-                (format!("summary.diagnosis.{}_level_db", of.name().to_lowercase()), about.clone())
-            }));
+            all.extend(Defect::ALL.map(|of| (format!("summary.{}", level_column(of)), about.clone())));
         }
         all.insert(format!("summary.{}", quantity.path), about);
     }

@@ -89,10 +89,10 @@ fn analytic_rollers_between_rigid_rings() {
     const SHARE: f64 = 0.02;
     let of_flanges = |name: &str| ["NJ ", "NUP ", "N "].iter().any(|flanges| name.starts_with(flanges));
     let mut cases: Vec<(String, &str)> = stribeck_theory::catalogue::all()
-        .into_iter()
+        .iter()
         .filter(|bearing| bearing.angle_deg == 0.0 && !of_flanges(&bearing.name))
         .filter(|bearing| bearing.boundary.is_some() || bearing.name == stribeck_theory::catalogue::PAPER)
-        .map(|bearing| (bearing.name, ""))
+        .map(|bearing| (bearing.name.clone(), ""))
         .collect();
     // Narrow and wide series have the same rollers, and further sizes differ by their size alone.
     let one_of_many = |name: &str| {

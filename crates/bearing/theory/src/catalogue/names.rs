@@ -18,11 +18,7 @@ pub fn plain(text: &str) -> String {
 
 /// The bearing among `known` whose name, letters and digits alone, is that of `name` or begins it. Of several
 /// it is the one with the longest name, and of these the first.
-pub(super) fn find(
-    name: &str,
-    known: Vec<CatalogueBearing>,
-    advice: &str,
-) -> Result<CatalogueBearing, String> {
+pub(super) fn find(name: &str, known: &[CatalogueBearing], advice: &str) -> Result<CatalogueBearing, String> {
     // A maker may stand before: `Rexnord ZA-2115`, `SKF6205`.
     let behind_maker = name.split_once(' ').filter(|(maker, _)| {
         maker.chars().all(char::is_alphabetic) && !NEEDLES.contains(&maker.to_uppercase().as_str())
@@ -44,7 +40,7 @@ pub(super) fn find(
     if let Some(why) = asked.iter().find_map(|asked| beyond_a_plane(asked)) {
         return Err(format!("`{name}` is {why}"));
     }
-    let meant = match nearest(&whole, &known)[..] {
+    let meant = match nearest(&whole, known)[..] {
         [] => String::new(),
         ref near => format!(", did you mean {}?", near.join(" or ")),
     };
@@ -116,7 +112,7 @@ pub fn beyond_a_plane(whole: &str) -> Option<&'static str> {
 }
 
 /// The bearings among `known` whose names begin as `text` does.
-pub(super) fn beginning_with(text: &str, known: Vec<CatalogueBearing>) -> Vec<CatalogueBearing> {
+pub(super) fn beginning_with(text: &str, known: &[CatalogueBearing]) -> Vec<CatalogueBearing> {
     let asked = plain(text);
     let begins = |name: &str| match name.strip_prefix(asked.as_str()) {
         // `N` are the bearings of that kind, not those that begin with NU.
@@ -127,5 +123,5 @@ pub(super) fn beginning_with(text: &str, known: Vec<CatalogueBearing>) -> Vec<Ca
         }
         None => false,
     };
-    known.into_iter().filter(|bearing| !asked.is_empty() && begins(&plain(&bearing.name))).collect()
+    known.iter().filter(|bearing| !asked.is_empty() && begins(&plain(&bearing.name))).cloned().collect()
 }

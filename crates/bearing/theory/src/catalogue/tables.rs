@@ -1,5 +1,7 @@
 //! The bearings themselves: dimensions, and where each is from.
 
+use std::sync::LazyLock;
+
 use super::{Boundary, CatalogueBearing, Element};
 
 /// Name, element, number, diameter, pitch [mm], contact angle [°], bore, outside, width [mm], source.
@@ -128,9 +130,12 @@ pub(super) fn balls_mm([bore, outside, width]: [f64; 3]) -> [f64; 2] {
 }
 
 /// All bearings that have a name here.
-pub fn all() -> Vec<CatalogueBearing> {
-    let others = OTHERS.iter().copied().map(of_row);
-    others.chain(deep_groove()).chain(inserts()).chain(cylindrical()).chain(beyond_a_plane()).collect()
+pub fn all() -> &'static [CatalogueBearing] {
+    static ALL: LazyLock<Vec<CatalogueBearing>> = LazyLock::new(|| {
+        let others = OTHERS.iter().copied().map(of_row);
+        others.chain(deep_groove()).chain(inserts()).chain(cylindrical()).chain(beyond_a_plane()).collect()
+    });
+    &ALL
 }
 
 fn deep_groove() -> impl Iterator<Item = CatalogueBearing> {
@@ -287,13 +292,13 @@ mod tests {
     /// 62 × 1.5 mm wide of the light series are bearings of their own: every name is there once.
     #[test]
     fn invariant_every_name_is_there_once() {
-        let mut names: Vec<String> = all().into_iter().map(|bearing| bearing.name).collect();
+        let mut names: Vec<&str> = all().iter().map(|bearing| bearing.name.as_str()).collect();
         let count = names.len();
         names.sort();
         names.dedup();
         assert_eq!(names.len(), count);
         assert!(count > 300, "{count}");
-        let sizes = all().into_iter().flat_map(|bearing| [bearing.diameter_mm, bearing.pitch_mm]);
-        assert!(sizes.into_iter().all(|mm| mm > 0.0 && mm < 300.0));
+        let mut sizes = all().iter().flat_map(|bearing| [bearing.diameter_mm, bearing.pitch_mm]);
+        assert!(sizes.all(|mm| mm > 0.0 && mm < 300.0));
     }
 }

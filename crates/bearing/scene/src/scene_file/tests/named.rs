@@ -106,7 +106,7 @@ fn behaves_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
                 let kinds = ["contact angle", "self-aligning", "spherical"];
                 assert!(kinds.iter().any(|kind| why.contains(kind)), "{text}: {why}");
                 if bearing.angle_deg == 0.0 || bearing.elements.is_some() {
-                    refused.push(bearing.name);
+                    refused.push(bearing.name.as_str());
                 }
             }
         }
