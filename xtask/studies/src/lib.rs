@@ -19,7 +19,6 @@ mod figure;
 mod host;
 mod kills;
 mod long;
-mod machine;
 mod noise;
 mod page;
 mod paper;
@@ -76,8 +75,6 @@ pub enum Study {
     Spalls(Flags),
     /// How far the reduced bearing is from the full one, scene by scene
     Reduced(Flags),
-    /// Records of machines fitted on one record a rig, beside the measured ones
-    Machine(machine::Options),
     /// Measured records of known state through the verdict of `analyse`, beside plainer methods
     Verdicts(verdicts::Options),
 }
@@ -96,7 +93,6 @@ impl Study {
             Self::Atlas(_) => "atlas",
             Self::Spalls(_) => "spalls",
             Self::Reduced(_) => "reduced",
-            Self::Machine(_) => "machine",
             Self::Verdicts(_) => "verdicts",
         }
     }
@@ -116,7 +112,6 @@ impl Study {
             Self::Atlas(flags) => atlas::measure(&runner(flags), rows)?,
             Self::Spalls(flags) => spalls::measure(&runner(flags), rows)?,
             Self::Reduced(flags) => reduced::measure(&runner(flags), rows)?,
-            Self::Machine(options) => machine::measure(options, host, rows)?,
             Self::Verdicts(options) => verdicts::measure(options, host, rows)?,
         }
         Ok(Answer::default())

@@ -38,7 +38,7 @@ mod limits;
 mod list;
 mod machine;
 #[cfg(feature = "full")]
-pub mod machine_fit;
+mod machine_fit;
 #[cfg(feature = "full")]
 mod many_runs;
 #[cfg(feature = "full")]

@@ -54,11 +54,11 @@ pub struct Options {
 
 /// State of a bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State {
+struct State {
     /// Raceway and length of its spall [mm]; `None` for a sound one.
-    pub spall: Option<(DefectRing, f64)>,
+    spall: Option<(DefectRing, f64)>,
     /// Its width across the raceway [mm]; `None` for one that takes the whole contact.
-    pub width_mm: Option<f64>,
+    width_mm: Option<f64>,
 }
 
 impl State {
@@ -86,7 +86,7 @@ impl State {
     }
 
     /// The family of its defect.
-    pub fn family(self) -> Option<Defect> {
+    fn family(self) -> Option<Defect> {
         self.spall.map(|(ring, _)| match ring {
             DefectRing::Outer => Defect::Bpfo,
             DefectRing::Inner => Defect::Bpfi,
@@ -95,7 +95,7 @@ impl State {
 }
 
 /// The scene of a bearing in such a state, whose force makes a record of `duration_s` at `rate_hz`.
-pub fn scene_of(
+fn scene_of(
     bearing: &str,
     (load_n, speed_rpm): (f64, f64),
     state: State,
@@ -261,16 +261,6 @@ fn words(a: &MachineAgreement) -> String {
 fn three_digits(level: f64) -> String {
     let decimals = if level > 0.0 { 2.0 - level.log10().floor() } else { 2.0 };
     format!("{level:.*}", decimals.clamp(0.0, 12.0) as usize)
-}
-
-/// What is known of a record for its verdict.
-pub fn known_of(bearing: &str, speed_rpm: f64, load_n: f64) -> Result<Machine> {
-    Ok(Machine {
-        speed_rpm: Some(speed_rpm),
-        bearing: Some(catalogue::parse(bearing).map_err(anyhow::Error::msg)?),
-        load_n: Some((load_n, load_n)),
-        ..Machine::default()
-    })
 }
 
 #[cfg(test)]

@@ -130,7 +130,7 @@ fn coloured(
     if background.iter().all(|band| band.rms_m_s2 == 0.0) {
         return Ok(vec![0.0; count]);
     }
-    let white: Vec<f64> = (0..count).map(|_| normal(dice)).collect();
+    let white: Vec<f64> = (0..count).map(|_| dice.normal()).collect();
     // White noise of unit variance has a density of two over the sample rate.
     let gain = |band: &BackgroundScene| {
         (band.rms_m_s2 * (0.5 * rate_hz / (WIDTH * band.hz)).sqrt()).max(f64::MIN_POSITIVE.sqrt())
@@ -138,12 +138,6 @@ fn coloured(
     let (hz, gains): (Vec<f64>, Vec<f64>) = background.iter().map(|band| (band.hz, gain(band))).unzip();
     let response = Response::of_gains(&hz, &gains, 0.5 * rate_hz).map_err(Error::Signal)?;
     response.through(&white, rate_hz).map_err(Error::Signal)
-}
-
-/// Normally distributed with a variance of 1: G. E. P. Box and M. E. Muller, Ann. Math. Stat. 29 (1958) 610.
-fn normal(dice: &mut Dice) -> f64 {
-    let (length, turn) = (1.0 - dice.share(), dice.share());
-    (-2.0 * length.ln()).sqrt() * (TAU * turn).cos()
 }
 
 fn sensor(of: &MachineSensorScene, seed: u64) -> Sensor {
@@ -177,7 +171,7 @@ mod tests {
 
     fn white(count: usize, seed: u64) -> Force {
         let mut dice = Dice::new(seed);
-        let samples = (0..count).map(|_| 100.0 + 3.0 * normal(&mut dice)).collect();
+        let samples = (0..count).map(|_| 100.0 + 3.0 * dice.normal()).collect();
         Force { rate_hz: 51_200.0, from_s: 0.0, samples }
     }
 

@@ -127,6 +127,34 @@ fn larger_by_radius_or_rim(film: &str) {
     assert!(felt > 20.0 * off, "film {film}: diameters make {felt}, the ways differ by {off}");
 }
 
+/// Straight edges of a spall make every passage alike; of ragged ones as much is gone as is drawn for each, and a run
+/// that goes on draws the same.
+#[test]
+fn behaves_ragged_edges_make_passages_differ() {
+    let text = "(bearing: \"6205\", model: reduced(), film: None, defect: None, housing: rigid(mass_kg: 10), \
+        defects: [(form: spall(length_mm: 1, depth_mm: 0.05, edge: rectangular, ragged_um: 20))], \
+        operation: (load_n: 500, speed_rpm: 1800, gravity_m_s2: 0), output: (frames: None, interval_us: 20), \
+        solver: (duration_ms: 90, mass_damping_per_s: 5000))";
+    let ragged = Scene::parse(text, "here").expect("a scene");
+    let straight = ragged.with_overrides(&["defects.0.form.ragged_um=0"]).expect("a scene");
+    let folder = Scratch::create("reduced-ragged");
+    // How much the largest forces of the elements differ, each after its settling, over their mean.
+    let scatter = |scene: &Scene, name: &str| {
+        assert_eq!(run(scene, &folder, name, 1).status, Status::Complete);
+        let trace = trace(&folder, name);
+        let peak = |i: usize| {
+            let force = channel(&trace, &format!("roller.{i}.outer_fy_n"));
+            force[1000..].iter().fold(0.0_f64, |most, f| most.max(f.abs()))
+        };
+        let peaks: Vec<f64> = (1..=scene.bearing.rollers).map(peak).collect();
+        let mean = peaks.iter().sum::<f64>() / peaks.len() as f64;
+        (peaks.iter().map(|peak| (peak / mean - 1.0).powi(2)).sum::<f64>() / peaks.len() as f64).sqrt()
+    };
+    let (of_straight, of_ragged) = (scatter(&straight, "straight"), scatter(&ragged, "ragged"));
+    assert!(of_ragged > 3.0 * of_straight, "{of_ragged} and {of_straight}");
+    assert_goes_on_with_the_same_bytes(&ragged, &Scratch::create("reduced-ragged-on"), 2000);
+}
+
 /// From one start, full and reduced model carry the load on the same rollers at first.
 #[test]
 fn peer_the_reduced_model_starts_as_the_full_one() {
