@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::machine::agreement::{MachineAgreement, Measured, beside};
 use stribeck_analysis::machine::fit::{Known, fit};
 use stribeck_analysis::machine::{Force, interval_us};
-use stribeck_diagnosis::{Defect, Machine, usual_load_n};
+use stribeck_diagnosis::{Defect, usual_load_n};
 use stribeck_scene::catalogue;
 use stribeck_scene::machine::MachineScene;
 use stribeck_scene::scene::{DefectRing, Scene};

@@ -65,9 +65,9 @@ group! {
         pub edge_mm: f64 = 0.0, within(0.0, 5_000.0);
         /// Form of its edges.
         pub edge: Edge = Edge::Sloped;
-        /// Depth of rectangular edges of raceways that is gone at most where a rolling element meets them [µm], drawn
-        /// anew for each passage by `bearing.diameter_seed`: ragged edges, which elements cross at other places of
-        /// their width. In the reduced model.
+        /// Depth of rectangular edges of raceways that is gone at most where a rolling element meets them [µm], no
+        /// more than that of the spall, drawn anew for each passage by `bearing.diameter_seed`: ragged edges, which
+        /// elements cross at other places of their width. In the reduced model.
         pub ragged_um: f64 = 0.0, within(0.0, 1_000.0), omitted();
     }
 }

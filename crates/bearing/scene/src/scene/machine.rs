@@ -61,8 +61,9 @@ group! {
         pub hz: f64 = 1000.0, within(1.0, 1e6), required();
         /// Damping ratio [-].
         pub damping: f64 = 0.03, within(1e-4, 0.99);
-        /// Acceleration over force far above it [1/kg]: the inverse of its mass.
-        pub gain: f64 = 0.1, positive(1e6), required();
+        /// Acceleration over force far above it [1/kg]: the inverse of its mass, negative where the sensor moves against
+        /// the place of the force.
+        pub gain: f64 = 0.1, within(-1e6, 1e6), required();
     }
 }
 
@@ -70,8 +71,8 @@ group! {
     /// Modes as plates and shells have them: as many in each band of equal width, of one loss factor, moved at the
     /// place of the force and at the sensor by shapes that are drawn.
     pub struct PlateScene: Copy {
-        /// Its mass [kg].
-        pub mass_kg: f64 = 30.0, positive(1e6);
+        /// Its mass over that which moves with the ring [-].
+        pub mass_ratio: f64 = 3.0, positive(1e6);
         /// Frequency below which it has no mode, and yields as a spring does [Hz].
         pub from_hz: f64 = 800.0, within(1.0, 1e6);
         /// Mean distance of two natural frequencies [Hz].
@@ -102,6 +103,8 @@ group! {
         pub hz: f64 = 100.0, within(0.1, 1e6), required();
         /// Amplitude [m/s²].
         pub amplitude_m_s2: f64 = 0.1, within(0.0, 1e6), required();
+        /// With all its multiples, of the same amplitude: pulses, as those of converters.
+        pub comb: bool = false, omitted();
     }
 }
 
@@ -191,11 +194,11 @@ impl MachineScene {
 
     /// Modes of the path: its own, or usual ones for the size of a bearing where it has no other path either.
     pub fn path_modes(&self, bearing: &BearingScene) -> Vec<PathModeScene> {
+        let mass_kg = self.mass(bearing).mass_kg.max(f64::MIN_POSITIVE);
         if self.has_path() {
-            let of_plate = self.plate.map(|plate| plate.modes()).unwrap_or_default();
+            let of_plate = self.plate.map(|plate| plate.modes(mass_kg)).unwrap_or_default();
             return [&self.modes[..], &of_plate].concat();
         }
-        let mass_kg = self.mass(bearing).mass_kg.max(f64::MIN_POSITIVE);
         let slower = USUAL.0 / outside_mm(bearing);
         USUAL_MODES
             .map(|(hz, damping, part)| PathModeScene { hz: slower * hz, damping, gain: part / mass_kg })
@@ -240,12 +243,12 @@ impl MachineScene {
 
 impl PlateScene {
     /// Its modes: one natural frequency drawn in each spacing; gains are products of normal shapes at two places, whose
-    /// mean squares are 1 (L. Cremer, M. Heckl and B. Petersson, Structure-Borne Sound, Springer 2005, §5.4).
-    fn modes(&self) -> Vec<PathModeScene> {
+    /// mean squares are 1 (L. Cremer, M. Heckl and B. Petersson, Structure-Borne Sound, Springer 2005).
+    fn modes(&self, housing_kg: f64) -> Vec<PathModeScene> {
         let mut dice = Dice::new(self.seed);
         let mode = |n: i32| {
             let hz = self.from_hz + self.spacing_hz * (f64::from(n) + dice.share());
-            let gain = (dice.normal() * dice.normal()).abs().max(1e-3) / self.mass_kg;
+            let gain = dice.normal() * dice.normal() / (self.mass_ratio * housing_kg);
             PathModeScene { hz, damping: 0.5 * self.loss_factor, gain }
         };
         (0..).map(mode).take_while(|mode| mode.hz < self.to_hz).collect()
@@ -340,7 +343,7 @@ mod tests {
                 .zip(&of)
                 .all(|(hz, mode)| (0.0..500.0).contains(&(mode.hz - f64::from(hz))))
         );
-        let heavy = modes(PlateScene { mass_kg: 2.0 * plate.mass_kg, ..plate });
+        let heavy = modes(PlateScene { mass_ratio: 2.0 * plate.mass_ratio, ..plate });
         assert!(of.iter().zip(&heavy).all(|(a, b)| a.hz == b.hz && (a.gain / b.gain - 2.0).abs() < 1e-12));
         assert_ne!(of, modes(PlateScene { seed: 2, ..plate }));
         assert_eq!(

@@ -114,7 +114,7 @@ fn parameters(scene: &ResolvedScene, reduction: &Reduction) -> Result<Parameters
 fn ragged(scene: &ResolvedScene, on: RollingSurface) -> Ragged {
     let of = |deviation: &DeviationScene| match &deviation.form {
         FormScene::Spall(spall) if deviation.on == on => Some(Ragged {
-            by: 1e-6 * spall.ragged_um,
+            by: 1e-6 * spall.ragged_um.min(1e3 * spall.depth_mm),
             at: deviation.angle_deg.to_radians(),
             seed: scene.written.bearing.diameter_seed,
         }),

@@ -127,32 +127,38 @@ fn larger_by_radius_or_rim(film: &str) {
     assert!(felt > 20.0 * off, "film {film}: diameters make {felt}, the ways differ by {off}");
 }
 
-/// Straight edges of a spall make every passage alike; of ragged ones as much is gone as is drawn for each, and a run
-/// that goes on draws the same.
+/// Where edges are ragged, passages differ more, and a run that goes on draws the same for each.
 #[test]
 fn behaves_ragged_edges_make_passages_differ() {
     let text = "(bearing: \"6205\", model: reduced(), film: None, defect: None, housing: rigid(mass_kg: 10), \
         defects: [(form: spall(length_mm: 1, depth_mm: 0.05, edge: rectangular, ragged_um: 20))], \
         operation: (load_n: 500, speed_rpm: 1800, gravity_m_s2: 0), output: (frames: None, interval_us: 20), \
-        solver: (duration_ms: 90, mass_damping_per_s: 5000))";
-    let ragged = Scene::parse(text, "here").expect("a scene");
-    let straight = ragged.with_overrides(&["defects.0.form.ragged_um=0"]).expect("a scene");
+        solver: (duration_ms: 500, mass_damping_per_s: 5000))";
+    let scene = |text: &str| Scene::parse(text, "here").expect("a scene");
+    let (ragged, straight) = (scene(text), scene(&text.replace(", ragged_um: 20", "")));
     let folder = Scratch::create("reduced-ragged");
-    // How much the largest forces of the elements differ, each after its settling, over their mean.
+    // Standard deviation of the blows over their mean: the range of the force of all elements in each passage.
     let scatter = |scene: &Scene, name: &str| {
         assert_eq!(run(scene, &folder, name, 1).status, Status::Complete);
         let trace = trace(&folder, name);
-        let peak = |i: usize| {
-            let force = channel(&trace, &format!("roller.{i}.outer_fy_n"));
-            force[1000..].iter().fold(0.0_f64, |most, f| most.max(f.abs()))
+        let mut force = vec![0.0; channel(&trace, "roller.1.outer_fy_n").len()];
+        for i in 1..=scene.bearing.rollers {
+            let of = channel(&trace, &format!("roller.{i}.outer_fy_n"));
+            force.iter_mut().zip(of).for_each(|(sum, f)| *sum += f);
+        }
+        let passage = (scene.kinematics().bpfo_hz * 20e-6).recip() as usize;
+        let range = |part: &[f64]| {
+            part.iter().copied().fold(f64::MIN, f64::max) - part.iter().copied().fold(f64::MAX, f64::min)
         };
-        let peaks: Vec<f64> = (1..=scene.bearing.rollers).map(peak).collect();
-        let mean = peaks.iter().sum::<f64>() / peaks.len() as f64;
-        (peaks.iter().map(|peak| (peak / mean - 1.0).powi(2)).sum::<f64>() / peaks.len() as f64).sqrt()
+        let blows: Vec<f64> = force[5000..].chunks_exact(passage).map(range).collect();
+        let mean = blows.iter().sum::<f64>() / blows.len() as f64;
+        (blows.iter().map(|blow| (blow / mean - 1.0).powi(2)).sum::<f64>() / blows.len() as f64).sqrt()
     };
     let (of_straight, of_ragged) = (scatter(&straight, "straight"), scatter(&ragged, "ragged"));
-    assert!(of_ragged > 3.0 * of_straight, "{of_ragged} and {of_straight}");
-    assert_goes_on_with_the_same_bytes(&ragged, &Scratch::create("reduced-ragged-on"), 2000);
+    // Blows of straight edges differ, too: the ring still moves from the one before.
+    assert!(of_ragged > 1.5 * of_straight, "{of_ragged} and {of_straight}");
+    let short = ragged.with_overrides(&["solver.duration_ms=60"]).expect("a scene");
+    assert_goes_on_with_the_same_bytes(&short, &Scratch::create("reduced-ragged-on"), 2000);
 }
 
 /// From one start, full and reduced model carry the load on the same rollers at first.
