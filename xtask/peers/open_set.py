@@ -327,9 +327,9 @@ def interval(truth, all_answers, bearings, draws=400):
     return np.quantile(scores, [0.025, 0.975])
 
 
-def trial(name, models, train, test, of=lambda table: table.features):
+def trial(name, fitted, test, of):
     """Score, interval and spread over the seeds."""
-    answers = [said(model.fit(of(train), train.labels), test, of) for model in models]
+    answers = [said(model, test, of) for model in fitted]
     scores = [macro_f1(test.labels, answer) for answer in answers]
     low, high = interval(test.labels, answers, test.bearings)
     return dict(model=name, f1=np.mean(scores), low=low, high=high, least=min(scores), most=max(scores))
@@ -374,26 +374,26 @@ def benchmark(ours, theirs, rocketed, program):
     """Rows (trial, tested, windows, bearings, score)."""
     train, seeds, rows = Table.of(ours), range(1, 6), []
     tests = {name: [r for r in theirs if r.rig in rigs] for name, rigs in TRIED.items()}
-    apart = held_out(train)
-    tables = [("simulated, other bearings and machines", *apart)]
-    tables += [(name, train, Table.of(records)) for name, records in tests.items()]
-    for name, own, test in tables:
-        of = (name, len(test.labels), len(np.unique(test.bearings)))
-        rows.append((*of, trial("forest", [forest(seed) for seed in seeds], own, test)))
-        if rocketed:
-            models = [rocket(seed) for seed in seeds]
-            rows.append((*of, trial("MiniRocket", models, own, test, lambda table: table.samples[:, None])))
+    known, apart = held_out(train)
+    ways = [("forest", forest, lambda table: table.features)]
+    ways += [("MiniRocket", rocket, lambda table: table.samples[:, None])] if rocketed else []
+    tables = {name: Table.of(records) for name, records in tests.items()}
+    for own, tried in ((known, {"simulated, other bearings and machines": apart}), (train, tables)):
+        for way, model, of in ways:
+            fitted = [model(seed).fit(of(own), own.labels) for seed in seeds]
+            for name, test in tried.items():
+                size = (len(test.labels), len(np.unique(test.bearings)))
+                rows.append((name, *size, trial(way, fitted, test, of)))
     for name, records in tests.items() if program else ():
-        of = (name, len(records), len({r.bearing for r in records}))
-        rows.append((*of, verdict(program, records)))
-    return rows
+        rows.append((name, len(records), len({(r.rig, r.bearing) for r in records}), verdict(program, records)))
+    return sorted(rows, key=lambda row: ["simulated, other bearings and machines", *TRIED].index(row[0]))
 
 
 def write(table):
     """Values as rows, and the page."""
     rows = []
     for name, n, quantities_of, quantiles, scores in table:
-        variant = name or "all"
+        variant = name or "set"
         rows.append(("records", variant, "n", n))
         for share in quantiles.index:
             rows += [(f"simulated {variant}", quantity, f"quantile {share}", quantiles.at[share, quantity]) for quantity in QUANTITIES]
@@ -450,24 +450,23 @@ def page(table):
         "record, which learns nothing. *Other bearings and machines*: simulated ones, of which training had neither.",
     ]
     if len(table) > 1:
-        tried = [rig for rig, *_, score in scores if score["model"] == "forest"]
-        lines += [
-            "",
-            "## What each part of a scene does",
-            "",
-            "| | records | " + " | ".join(QUANTITIES) + " | " + " | ".join(f"F1 {rig.split(',')[0]}" for rig in tried) + " |",
-            "|---|---|" + "---|" * (len(QUANTITIES) + len(tried)),
-        ]
-        for name, n, quantities_of, _, scores in table:
+        lines += ["", "## What each part of a scene does", "", "| | records | " + " | ".join(QUANTITIES) + " |", "|---|---|" + "---|" * len(QUANTITIES)]
+        for name, n, quantities_of, *_ in table[1:]:
             inside = {quantity: share for quantity, rig, *_, share in quantities_of if rig == "all"}
-            f1 = {rig: score["f1"] for rig, *_, score in scores if score["model"] == "forest"}
-            shares = " | ".join(f"{100 * inside[quantity]:.0f}" for quantity in QUANTITIES)
-            lines.append(f"| {name or 'all'} | {n} | {shares} | " + " | ".join(f"{f1[rig]:.2f}" for rig in tried) + " |")
-        lines += ["", "Share inside the measured range (%), and macro-F1 of the forest."]
+            lines.append(f"| {name} | {n} | " + " | ".join(f"{100 * inside[quantity]:.0f}" for quantity in QUANTITIES) + " |")
+        lines += ["", "Share inside the measured range (%), of records of the same bearings with a damaged outer raceway."]
     return "\n".join([*lines, "", BOUNDS, ""])
 
 
 BOUNDS = """## What bounds it
+
+- **Records.** 81 of the 10 080 are tried here, of 22 ball bearings. Records of the campaign that stop are left out: 8 of 154, seven of them of a class of loose cages that the set no longer has.
+- **Kurtosis and likeness of passages.** Where a spall stands clear of the background, simulated passages are more alike than measured ones; elsewhere the background sets the kurtosis. In the plane a ball crosses a spall nowhere but in its middle, and edges alone differ.
+- **The outer raceway is taken for the inner one** where its impacts vary with the shaft: DE-OR-021-at12 of CWRU, OR8 of HIT-SM, half of UESTC's.
+- **Hardly visible damage is called healthy**: DE-OR-014 and DE-IR-028 of CWRU, KI14 and KA30 of Paderborn. KA30 is spread over the raceway; no simulated damage is.
+- **Few healthy bearings**: one or two a rig, so that intervals are wide.
+- **Samples alone do not carry over**: MiniRocket is given neither speed nor bearing.
+- **A look at these rigs.** No number was fitted on them, but ranges of paths, backgrounds and combs were widened after a comparison; a rig that nobody has looked at would be the proof.
 
 Written by `python xtask/peers/open_set.py`; all numbers are in [open_set.csv](open_set.csv)."""
 
@@ -485,7 +484,7 @@ def main():
     for name, folder in [("", given.simulated), *((word.split("=")[0], pathlib.Path(word.split("=")[1])) for word in given.beside)]:
         ours = list(simulated(folder))
         rows, quantiles = table_of_quantities(described(ours), known)
-        scores = benchmark(ours, theirs, not (name or given.quick), None if name else given.program)
+        scores = [] if name else benchmark(ours, theirs, not given.quick, given.program)
         table.append((name, len(ours), rows, quantiles, scores))
         print(f"{name or 'all'}: {len(ours)} simulated records", quantiles.round(2).T.to_string(), sep="\n")
         for quantity, rig, n, low, high, share in rows:
