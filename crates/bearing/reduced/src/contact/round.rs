@@ -714,7 +714,8 @@ mod tests {
                     reach[lane] *= 1.0 + 0.01 * f64::from(n % 7);
                 }
                 let facet = |lane: usize| at(&outline, &relief, angle(lane), distance[lane]).1;
-                let contacts = Contacts { d: &d, distance: &distance, reach: &reach, these: 0xff };
+                let (ragged, these) = (Row::default(), 0xff);
+                let contacts = Contacts { d: &d, distance: &distance, reach: &reach, ragged: &ragged, these };
                 relief.look(simd, &contacts, &mut pieces, facet);
                 let mut found = Penetration::<Row>::default();
                 let mut areas = Rows::default();
