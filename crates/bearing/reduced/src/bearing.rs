@@ -3,6 +3,7 @@
 
 use crate::modal::{
     ModalBearing, OVERLOAD, Parameters, Reduction, STICKING, compliance::contact_length, outline::per_angle,
+    parameters::Ragged,
 };
 
 use crate::{
@@ -48,6 +49,8 @@ pub struct Bearing {
     /// What the oil takes from the motion.
     pub(crate) resistance: Option<Resistance>,
     pub(crate) sensors: Sensors,
+    /// Ragged edges of spalls in the outer and the inner raceway.
+    pub(crate) ragged: [Ragged; 2],
     /// Speeds and load.
     pub(crate) operation: Operation,
     /// The housing that stands still, where the shaft is moved.
@@ -112,6 +115,7 @@ impl Bearing {
             oil: oil.transpose()?,
             resistance,
             sensors: Sensors::new(&reduction),
+            ragged: parameters.ragged,
             operation: Operation::new(&parameters, reduction.load.force),
             housing: None,
             reduction,
@@ -273,7 +277,8 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
     let bounds = nearest_about(&about, BESIDE * radii.roller, 1.0 / (kr - ko));
     let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
     let relief = |outline: &Outline, radius: f64, along: bool| {
-        outlines.arcs.then(|| Relief::new(outline, radius, radii.roller, along))
+        let ragged = parameters.ragged[usize::from(!along)].by > 0.0;
+        outlines.arcs.then(|| Relief::new(outline, radius, radii.roller, along, ragged))
     };
     let sides = |along: bool, relative: f64| Sides {
         along,

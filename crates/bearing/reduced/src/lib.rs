@@ -46,6 +46,7 @@ mod law;
 mod modes;
 pub mod oil;
 mod plane;
+mod ragged;
 mod resistance;
 pub mod roller_force;
 mod rollers;

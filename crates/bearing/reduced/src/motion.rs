@@ -112,6 +112,7 @@ impl BearingInMotion {
     pub fn interval(&mut self, steps: usize) -> Energies {
         let Self { bearing, saved: Saved { state, memory }, scratch, sensors } = self;
         scratch.begin(bearing, state.steps / steps as u64);
+        bearing.draw_edges(state.shaft, &mut scratch.blocks);
         bearing.advance(state, scratch, steps - 1, false);
         bearing.advance(state, scratch, 1, true);
         scratch.show(state);

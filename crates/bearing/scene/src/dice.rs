@@ -35,6 +35,12 @@ impl Dice {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// Normally distributed with a variance of 1: G. E. P. Box and M. E. Muller, Ann. Math. Stat. 29 (1958) 610.
+    pub fn normal(&mut self) -> f64 {
+        let (length, turn) = (1.0 - self.share(), self.share());
+        libm::sqrt(-2.0 * libm::log(length)) * libm::cos(std::f64::consts::TAU * turn)
+    }
+
     /// True once in `n`.
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0

@@ -20,12 +20,14 @@ const ENDED: f64 = 1e-3;
 /// Lines of a causal response: those of 12.8 kHz are 3 Hz apart.
 const CAUSAL_LINES: usize = 4096;
 
-/// One mode of a structure: acceleration by a force at the place of the sensor.
+/// One mode of a structure: acceleration of a sensor by a force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
     mass_kg: f64,
     stiffness_n_m: f64,
     damping_ratio: f64,
+    /// −1 where the sensor moves against the place of the force.
+    sense: f64,
 }
 
 impl Mode {
@@ -41,7 +43,13 @@ impl Mode {
             let why = "damping is the ratio to the critical one, above 0 and below 1, such as 0.02";
             return Err(Error::Undefined { quantity: "mode", why });
         }
-        Ok(Self { mass_kg, stiffness_n_m, damping_ratio })
+        Ok(Self { mass_kg, stiffness_n_m, damping_ratio, sense: 1.0 })
+    }
+
+    /// The same with the sensor moving against the place of the force.
+    #[must_use]
+    pub fn against(self) -> Self {
+        Self { sense: -self.sense, ..self }
     }
 
     /// Its natural frequency without damping [Hz].
@@ -55,7 +63,7 @@ impl Mode {
         let omega = TAU * hz;
         let (m, k) = (self.mass_kg, self.stiffness_n_m);
         let below = Complex::new(k - omega * omega * m, 2.0 * self.damping_ratio * omega * (k * m).sqrt());
-        Complex::new(-omega * omega, 0.0) / below
+        Complex::new(-self.sense * omega * omega, 0.0) / below
     }
 
     /// How long it rings [s].

@@ -45,6 +45,8 @@ pub(crate) struct Relief {
 struct Piece {
     ends: [[f64; 2]; 2],
     depth: [f64; 2],
+    /// Which of both ends is the upper end of a wall.
+    edge: [bool; 2],
 }
 
 /// A piece as it is seen from a roller: u of both ends and their heights along d from the centre of the
@@ -105,6 +107,8 @@ pub(crate) struct Contacts<'a> {
     pub(crate) distance: &'a Row,
     /// How far contacts may reach at the forces to start from [m].
     pub(crate) reach: &'a Row,
+    /// How much of ragged edges is gone where the rollers meet them [m].
+    pub(crate) ragged: &'a Row,
     /// Those of interest, a bit for each.
     pub(crate) these: u64,
 }
@@ -115,8 +119,9 @@ const MARGIN: f64 = 1.25;
 
 impl Relief {
     /// Of an outline about the centre of the circle, whose radius is `radius` [m], for round rollers [m].
-    /// `along` is whether vertices follow with growing u.
-    pub(crate) fn new(outline: &Outline, radius: f64, roller: f64, along: bool) -> Self {
+    /// `along` is whether vertices follow with growing u; facets beside walls are pieces of their own where edges
+    /// are `ragged`.
+    pub(crate) fn new(outline: &Outline, radius: f64, roller: f64, along: bool, ragged: bool) -> Self {
         let n = outline.len();
         let outwards = if along { 1.0 } else { -1.0 };
         let place = |vertex: usize| [outline.x[vertex], outline.y[vertex]];
@@ -138,18 +143,28 @@ impl Relief {
                     let [x, y] = last.ends[0];
                     let near = x * bx + y * by > WIDEST * libm::hypot(x, y) * libm::hypot(bx, by);
                     let depths = [last.depth[0], last.depth[1], to];
-                    near && level && depths.iter().all(|depth| (depth - from).abs() < ONE_DEPTH)
+                    near && level && !ragged && depths.iter().all(|depth| (depth - from).abs() < ONE_DEPTH)
                 };
                 match relief.pieces.last_mut().filter(|last| joins && goes_on(last)) {
                     Some(last) => last.ends[1] = [bx, by],
                     None => {
                         let depth = if level { [from; 2] } else { [from, to] };
-                        relief.pieces.push(Piece { ends: [[ax, ay], [bx, by]], depth });
+                        relief.pieces.push(Piece { ends: [[ax, ay], [bx, by]], depth, edge: [false; 2] });
                     }
                 }
                 joins = true;
             }
             relief.of_facet[facet] = relief.pieces.len().saturating_sub(1) as u32;
+        }
+        if ragged {
+            // Only walls are between pieces that do not meet.
+            let n = relief.pieces.len();
+            for i in 0..n {
+                let next = (i + 1) % n;
+                let rise = relief.pieces[i].depth[1] - relief.pieces[next].depth[0];
+                relief.pieces[i].edge[1] = rise < -ONE_DEPTH;
+                relief.pieces[next].edge[0] = rise > ONE_DEPTH;
+            }
         }
         relief
     }
@@ -203,7 +218,7 @@ impl Relief {
     ) {
         for lane in lanes(pieces.stale(simd, contacts) & contacts.these) {
             let reach = MARGIN * contacts.reach[lane];
-            pieces.list(self, facet(lane), lane, of_one(contacts.d, lane), reach);
+            pieces.list(self, facet(lane), lane, of_one(contacts.d, lane), [reach, contacts.ragged[lane]]);
         }
         pieces.count = 0;
         for lane in lanes(contacts.these) {
@@ -451,13 +466,13 @@ impl RoundParts {
         stale
     }
 
-    /// Lists the pieces under one roller.
+    /// Lists the pieces under one roller, with what is gone of ragged edges for it.
     #[inline(never)]
-    fn list(&mut self, relief: &Relief, facet: usize, lane: usize, d: [f64; 2], reach: f64) {
+    fn list(&mut self, relief: &Relief, facet: usize, lane: usize, d: [f64; 2], [reach, ragged]: [f64; 2]) {
         let bit = 1 << lane;
         let mut count = 0;
         for piece in relief.under(facet, d, reach) {
-            let [from, to] = piece.depth;
+            let [from, to] = [0, 1].map(|end| piece.depth[end] + if piece.edge[end] { ragged } else { 0.0 });
             let begins = count == 0 || from != to || {
                 let before = &self.parts[count - 1];
                 let apart = of_one(&before.ends[1], lane) != piece.ends[0];
@@ -564,7 +579,7 @@ mod tests {
     fn worn(radius: f64, along: bool, wave: f64, spall: f64) -> (Outline, Relief) {
         let depth = |angle: f64| wave * (37.0 * angle).sin() + 0.3 * wave * (101.0 * angle).cos();
         let outline = outline(radius, 660, depth, spall);
-        let relief = Relief::new(&outline, radius, ROLLER, along);
+        let relief = Relief::new(&outline, radius, ROLLER, along, false);
         (outline, relief)
     }
 
@@ -586,7 +601,7 @@ mod tests {
             (INNER, false, 1.0 / (1.0 / ROLLER + 1.0 / INNER)),
         ] {
             let outline = outline(radius, 660, |_| 0.0, 0.0);
-            let relief = Relief::new(&outline, radius, ROLLER, along);
+            let relief = Relief::new(&outline, radius, ROLLER, along, false);
             assert!(relief.pieces.len() < 8, "as many as a circle takes: {}", relief.pieces.len());
             for (angle, depth) in [(0.3, 1e-6), (1.7, 5e-6), (5.0, 12e-6)] {
                 let distance = radius - relief.outwards * (ROLLER - depth);
@@ -699,7 +714,8 @@ mod tests {
                     reach[lane] *= 1.0 + 0.01 * f64::from(n % 7);
                 }
                 let facet = |lane: usize| at(&outline, &relief, angle(lane), distance[lane]).1;
-                let contacts = Contacts { d: &d, distance: &distance, reach: &reach, these: 0xff };
+                let (ragged, these) = (Row::default(), 0xff);
+                let contacts = Contacts { d: &d, distance: &distance, reach: &reach, ragged: &ragged, these };
                 relief.look(simd, &contacts, &mut pieces, facet);
                 let mut found = Penetration::<Row>::default();
                 let mut areas = Rows::default();

@@ -241,8 +241,8 @@ impl ContactLaw {
     fn integrate_round<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
         let (Some(relief), true) = (&raceway.relief, contacts.near_round != 0) else { return };
         for at in vector_starts(simd) {
-            let RacewayContacts { d, distance, reach, .. } = &*contacts;
-            let seen = Contacts { d, distance, reach, these: contacts.near_round };
+            let RacewayContacts { d, distance, reach, ragged, .. } = &*contacts;
+            let seen = Contacts { d, distance, reach, ragged, these: contacts.near_round };
             let shift = Vector::load(simd, &contacts.shift, at);
             let mut found = relief.overlaps(simd, at, &seen, &contacts.pieces, shift);
             // The whole of what the turning direction adds is in `across`.
@@ -297,8 +297,8 @@ impl ContactLaw {
     #[inline(always)]
     fn look_at_round<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
         let (Some(relief), true) = (&raceway.relief, contacts.near_round != 0) else { return };
-        let RacewayContacts { centre, d, distance, reach, hints, pieces, near_round, .. } = contacts;
-        let seen = Contacts { d, distance, reach, these: *near_round };
+        let RacewayContacts { centre, d, distance, reach, ragged, hints, pieces, near_round, .. } = contacts;
+        let seen = Contacts { d, distance, reach, ragged, these: *near_round };
         let facet = |lane: usize| {
             let under = Self::under(raceway, of_one(centre, lane), of_one(d, lane), hints[lane][1]);
             hints[lane][1] = under as u32;

@@ -34,6 +34,20 @@ pub struct Parameters {
     pub pockets: Option<Pockets>,
     /// Oil between rollers and raceways, if there is some.
     pub oil: Option<Oil>,
+    /// Ragged edges of spalls in the outer and the inner raceway.
+    pub ragged: [Ragged; 2],
+}
+
+/// Edges of the spalls of a raceway of which other parts are gone wherever across its width a roller meets them,
+/// drawn anew for each passage.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Ragged {
+    /// Largest depth that is gone [m]; 0 where edges are straight.
+    pub by: f64,
+    /// Angle of the spall at the start [rad]; draws change opposite to it.
+    pub at: f64,
+    /// Seed of the draws.
+    pub seed: u64,
 }
 
 /// Vertices of the surfaces that roll on each other, counter-clockwise [m], with all deviations from round.

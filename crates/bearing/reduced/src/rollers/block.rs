@@ -104,6 +104,8 @@ pub(crate) struct RacewayContacts {
     pub(crate) near_round: u64,
     pub(crate) segments: [Segments; LANES],
     pub(crate) pieces: RoundParts,
+    /// How much of ragged edges is gone where the rollers meet them [m].
+    pub(crate) ragged: Row,
     /// Start of the search for the force: a force [N] and its root, the deflection of the bodies at it [m],
     /// the derivative of that [m/N], and how far from its middle the contact may reach [m].
     pub(crate) start: Row,

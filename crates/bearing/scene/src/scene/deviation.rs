@@ -65,6 +65,10 @@ group! {
         pub edge_mm: f64 = 0.0, within(0.0, 5_000.0);
         /// Form of its edges.
         pub edge: Edge = Edge::Sloped;
+        /// Depth of rectangular edges of raceways that is gone at most where a rolling element meets them [µm], no
+        /// more than that of the spall, drawn anew for each passage by `bearing.diameter_seed`: ragged edges, which
+        /// elements cross at other places of their width. In the reduced model.
+        pub ragged_um: f64 = 0.0, within(0.0, 1_000.0), omitted();
     }
 }
 
@@ -412,7 +416,7 @@ mod tests {
     /// Source: THEORY §6.4.
     #[test]
     fn analytic_profiles_at_chosen_places() {
-        let spall = SpallScene { length_mm: 6.0, depth_mm: 0.1, edge_mm: 1.0, edge: Edge::Sloped };
+        let spall = SpallScene { length_mm: 6.0, edge_mm: 1.0, ..SpallScene::default() };
         let dent = FormScene::Dent(DentScene { length_mm: 2.0, depth_mm: 0.02, rim_um: 3.0 });
         let point = |(at_mm, depth_um)| PointScene { at_mm, depth_um };
         let points = [(-1.0, 0.0), (0.0, 8.0), (0.5, 2.0)].map(point).into();

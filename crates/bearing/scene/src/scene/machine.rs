@@ -7,6 +7,7 @@
 
 use super::BearingScene;
 use super::housing::RigidHousingScene;
+use crate::dice::Dice;
 use crate::field::value::Value;
 use crate::group;
 
@@ -28,8 +29,10 @@ group! {
         pub gains: Vec<GainScene> = Vec::new(), omitted();
         /// How long a path by `gains` rings behind an impact, until it has died away to 1/e [ms]. The gains stay.
         pub ring_ms: f64 = 0.0, within(0.0, 1000.0), omitted();
-        /// Path as the sum of some modes, beside `gains`; four usual ones where there are no `gains` either.
+        /// Path as the sum of some modes, beside `gains`; four usual ones where there are neither `gains` nor a `plate`.
         pub modes: Vec<PathModeScene> = Vec::new(), omitted();
+        /// Path with the modes of a plate, beside `gains` and `modes`.
+        pub plate: Option<PlateScene> = None, omitted();
         /// Noise of the rest of the machine, by third octaves; a usual one where it is left out.
         pub background: Vec<BackgroundScene> = Vec::new(), omitted();
         /// Steady tones of the rest of the machine.
@@ -58,8 +61,28 @@ group! {
         pub hz: f64 = 1000.0, within(1.0, 1e6), required();
         /// Damping ratio [-].
         pub damping: f64 = 0.03, within(1e-4, 0.99);
-        /// Acceleration over force far above it [1/kg]: the inverse of its mass.
-        pub gain: f64 = 0.1, positive(1e6), required();
+        /// Acceleration over force far above it [1/kg]: the inverse of its mass, negative where the sensor moves against
+        /// the place of the force.
+        pub gain: f64 = 0.1, within(-1e6, 1e6), required();
+    }
+}
+
+group! {
+    /// Modes as plates and shells have them: as many in each band of equal width, of one loss factor, moved at the
+    /// place of the force and at the sensor by shapes that are drawn.
+    pub struct PlateScene: Copy {
+        /// Its mass over that which moves with the ring [-].
+        pub mass_ratio: f64 = 3.0, positive(1e6);
+        /// Frequency below which it has no mode, and yields as a spring does [Hz].
+        pub from_hz: f64 = 800.0, within(1.0, 1e6);
+        /// Mean distance of two natural frequencies [Hz].
+        pub spacing_hz: f64 = 400.0, within(10.0, 1e5);
+        /// Highest natural frequency [Hz].
+        pub to_hz: f64 = 12_000.0, within(100.0, 1e6);
+        /// Loss factor, twice the damping ratio [-].
+        pub loss_factor: f64 = 0.06, within(1e-4, 1.0);
+        /// Seed of frequencies and shapes.
+        pub seed: u64 = 1, within(0.0, 1e9);
     }
 }
 
@@ -80,6 +103,8 @@ group! {
         pub hz: f64 = 100.0, within(0.1, 1e6), required();
         /// Amplitude [m/s²].
         pub amplitude_m_s2: f64 = 0.1, within(0.0, 1e6), required();
+        /// With all its multiples, of the same amplitude: pulses, as those of converters.
+        pub comb: bool = false, omitted();
     }
 }
 
@@ -144,7 +169,19 @@ impl MachineScene {
                 }
             };
         }
-        first!(mass_kg, damping_per_s, direction_deg, gains, ring_ms, modes, background, lines, sensor, seed)
+        first!(
+            mass_kg,
+            damping_per_s,
+            direction_deg,
+            gains,
+            ring_ms,
+            modes,
+            plate,
+            background,
+            lines,
+            sensor,
+            seed
+        )
     }
 
     /// The mass about the ring, as the run takes it.
@@ -155,16 +192,21 @@ impl MachineScene {
         }
     }
 
-    /// Modes of the path: its own, or usual ones for the size of a bearing where it has no gains either.
+    /// Modes of the path: its own, or usual ones for the size of a bearing where it has no other path either.
     pub fn path_modes(&self, bearing: &BearingScene) -> Vec<PathModeScene> {
-        if !self.modes.is_empty() || !self.gains.is_empty() {
-            return self.modes.clone();
-        }
         let mass_kg = self.mass(bearing).mass_kg.max(f64::MIN_POSITIVE);
+        if self.has_path() {
+            let of_plate = self.plate.map(|plate| plate.modes(mass_kg)).unwrap_or_default();
+            return [&self.modes[..], &of_plate].concat();
+        }
         let slower = USUAL.0 / outside_mm(bearing);
         USUAL_MODES
             .map(|(hz, damping, part)| PathModeScene { hz: slower * hz, damping, gain: part / mass_kg })
             .into()
+    }
+
+    fn has_path(&self) -> bool {
+        !self.gains.is_empty() || !self.modes.is_empty() || self.plate.is_some()
     }
 
     /// The background below `highest_hz`: its own, or a usual one.
@@ -185,7 +227,7 @@ impl MachineScene {
 
     /// What of it is usual and not given, in words; `None` where nothing is.
     pub fn assumed(&self) -> Option<String> {
-        let path = (self.gains.is_empty() && self.modes.is_empty()).then_some("path to the sensor");
+        let path = (!self.has_path()).then_some("path to the sensor");
         let background = self.background.is_empty().then_some("background");
         let what: Vec<&str> = path.into_iter().chain(background).collect();
         (!what.is_empty()).then(|| {
@@ -196,6 +238,20 @@ impl MachineScene {
                 if what.len() == 1 { "is" } else { "are" }
             )
         })
+    }
+}
+
+impl PlateScene {
+    /// Its modes: one natural frequency drawn in each spacing; gains are products of normal shapes at two places, whose
+    /// mean squares are 1 (L. Cremer, M. Heckl and B. Petersson, Structure-Borne Sound, Springer 2005).
+    fn modes(&self, housing_kg: f64) -> Vec<PathModeScene> {
+        let mut dice = Dice::new(self.seed);
+        let mode = |n: i32| {
+            let hz = self.from_hz + self.spacing_hz * (f64::from(n) + dice.share());
+            let gain = dice.normal() * dice.normal() / (self.mass_ratio * housing_kg);
+            PathModeScene { hz, damping: 0.5 * self.loss_factor, gain }
+        };
+        (0..).map(mode).take_while(|mode| mode.hz < self.to_hz).collect()
     }
 }
 
@@ -270,6 +326,30 @@ mod tests {
         assert!(misspelt.contains("mas_kg") && misspelt.contains("motor.ron:2"), "{misspelt}");
         let outside = said(Some("(gains: [(hz: -3, gain: 1)])"));
         assert!(outside.contains("hz"), "{outside}");
+    }
+
+    /// As many modes as its band has spacings, one in each; twice the mass has half the gains.
+    #[test]
+    fn by_hand_a_plate_has_a_mode_in_each_spacing() {
+        let plate =
+            PlateScene { from_hz: 1000.0, to_hz: 11_000.0, spacing_hz: 500.0, ..PlateScene::default() };
+        let machine = |plate| MachineScene { plate: Some(plate), ..MachineScene::default() };
+        let modes = |plate| machine(plate).path_modes(&BearingScene::default());
+        let of = modes(plate);
+        assert_eq!(of.len(), 20);
+        assert!(
+            (1000..)
+                .step_by(500)
+                .zip(&of)
+                .all(|(hz, mode)| (0.0..500.0).contains(&(mode.hz - f64::from(hz))))
+        );
+        let heavy = modes(PlateScene { mass_ratio: 2.0 * plate.mass_ratio, ..plate });
+        assert!(of.iter().zip(&heavy).all(|(a, b)| a.hz == b.hz && (a.gain / b.gain - 2.0).abs() < 1e-12));
+        assert_ne!(of, modes(PlateScene { seed: 2, ..plate }));
+        assert_eq!(
+            machine(plate).assumed(),
+            MachineScene { gains: vec![GainScene { hz: 1.0, gain: 1.0 }], ..machine(plate) }.assumed()
+        );
     }
 
     /// A run of 20 kHz was refused for the 25.6 kHz of a sensor of which its scene said nothing.

@@ -1,7 +1,7 @@
 //! Choices that exclude each other: two kinds of damping, oil over gentle edges, a sudden start of the
 //! reduced model, relieved rollers where there is a mesh; and bands and lists of damping that must not be empty.
 
-use crate::deviation::RollingSurface;
+use crate::deviation::{DeviationScene, FormScene, RollingSurface};
 use crate::faults::rolling_circle;
 use crate::field::wording::number;
 use crate::reading::finding::{Finding, Remedy};
@@ -20,8 +20,16 @@ const LEAST_EDGE_DEG: f64 = 22.0;
 
 /// Every choice that excludes another, in a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let groups =
-        [damped_band, damped_bodies, damped_twice, oiled_edges, resisting_oil, reduced_starts, profiles];
+    let groups = [
+        damped_band,
+        damped_bodies,
+        damped_twice,
+        oiled_edges,
+        resisting_oil,
+        reduced_starts,
+        profiles,
+        ragged_edges,
+    ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
@@ -143,6 +151,27 @@ fn profiles(scene: &Scene) -> Option<Finding> {
     let straight = Remedy::new(PROFILE, "`straight`".to_owned()).value("straight", "");
     let remedies = std::iter::once(straight).chain(other).collect();
     Some(Finding::new(format!("`{PROFILE}` is `logarithmic`, and {why}"), remedies))
+}
+
+/// Only the reduced model has ragged edges, and only of walls of raceways.
+fn ragged_edges(scene: &Scene) -> Option<Finding> {
+    let ragged = |deviation: &DeviationScene| match &deviation.form {
+        FormScene::Spall(spall) if spall.ragged_um > 0.0 => Some(deviation.groove().is_some()),
+        _ => None,
+    };
+    let (n, is_groove) = scene.defects.iter().enumerate().find_map(|(n, of)| Some((n, ragged(of)?)))?;
+    let why = if scene.model == ModelScene::Full {
+        "the full model meshes straight edges"
+    } else if !is_groove {
+        "only rectangular edges of raceways are ragged"
+    } else {
+        return None;
+    };
+    let field = format!("defects[{n}].form.ragged_um");
+    Some(Finding::new(
+        format!("`{field}` is there, and {why}"),
+        vec![Remedy::new(&field, "0".to_owned()).value("0.0", "")],
+    ))
 }
 
 /// The reduced model is made about the preload.

@@ -6,12 +6,12 @@ use stribeck_reduced::modal::{
     ModalBearing, Parameters, Reduction,
     outline::per_angle,
     parameters::{
-        Branch, Contact, Damping, DampingFrame, Film, Oil, Outlines, Pockets, Radii, Resistance, RollerStart,
-        Speeds,
+        Branch, Contact, Damping, DampingFrame, Film, Oil, Outlines, Pockets, Radii, Ragged, Resistance,
+        RollerStart, Speeds,
     },
 };
 use stribeck_scene::{
-    deviation::Relief,
+    deviation::{DeviationScene, FormScene, Relief, RollingSurface},
     resolved::{ResolvedScene, pocket_half_width},
     scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies},
 };
@@ -106,7 +106,22 @@ fn parameters(scene: &ResolvedScene, reduction: &Reduction) -> Result<Parameters
         seat_friction: scene.written.contact.seat_friction,
         pockets: pockets(scene, &numbers),
         oil: oil(scene)?,
+        ragged: [RollingSurface::Outer, RollingSurface::Inner].map(|on| ragged(scene, on)),
     })
+}
+
+/// The most ragged spall of a raceway.
+fn ragged(scene: &ResolvedScene, on: RollingSurface) -> Ragged {
+    let of = |deviation: &DeviationScene| match &deviation.form {
+        FormScene::Spall(spall) if deviation.on == on => Some(Ragged {
+            by: 1e-6 * spall.ragged_um.min(1e3 * spall.depth_mm),
+            at: deviation.angle_deg.to_radians(),
+            seed: scene.written.bearing.diameter_seed,
+        }),
+        _ => None,
+    };
+    let all = scene.written.defects.iter().filter_map(of);
+    all.max_by(|a, b| a.by.total_cmp(&b.by)).unwrap_or_default()
 }
 
 /// Rollers of these pockets, from 0, at the start.

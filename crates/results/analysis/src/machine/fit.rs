@@ -245,7 +245,6 @@ fn solved(mut rows: Vec<[f64; 3]>, mut right: Vec<f64>) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::normal;
     use stribeck_scene::dice::Dice;
     use stribeck_testing::assert_refused;
 
@@ -254,10 +253,10 @@ mod tests {
         let mut dice = Dice::new(seed);
         let mut samples = vec![0.0; 204_800];
         for at in (100..samples.len() - 100).step_by(476) {
-            let size = level * (1.0 + 0.3 * normal(&mut dice));
+            let size = level * (1.0 + 0.3 * dice.normal());
             samples[at..at + 6].iter_mut().for_each(|f| *f += size);
         }
-        samples.iter_mut().for_each(|f| *f += 0.5 * normal(&mut dice));
+        samples.iter_mut().for_each(|f| *f += 0.5 * dice.normal());
         Force { rate_hz: 51_200.0, from_s: 0.0, samples }
     }
 

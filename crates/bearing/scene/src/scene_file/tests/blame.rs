@@ -111,6 +111,13 @@ fn issue_no_default_of_another_scene_is_proposed() {
     assert_eq!(dry.suggestion, "`film: None` (dry)");
     let problem = only(Scene::default().with_overrides(&["bearing.roller_profile=logarithmic"]));
     assert_eq!(problem.suggestion, "`straight`");
+    let ragged = "defects: [(form: spall(edge: EDGE, ragged_um: 5))], defect: None, film: None";
+    for (edge, model, words) in
+        [("rectangular", "full", "full model"), ("sloped", "reduced()", "only rectangular")]
+    {
+        let problem = only(parse(&format!("(model: {model}, {})", ragged.replace("EDGE", edge))));
+        assert!(problem.message.contains("ragged_um") && problem.message.contains(words), "{problem}");
+    }
 }
 
 #[test]

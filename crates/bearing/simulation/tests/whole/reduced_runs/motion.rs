@@ -127,6 +127,40 @@ fn larger_by_radius_or_rim(film: &str) {
     assert!(felt > 20.0 * off, "film {film}: diameters make {felt}, the ways differ by {off}");
 }
 
+/// Where edges are ragged, passages differ more, and a run that goes on draws the same for each.
+#[test]
+fn behaves_ragged_edges_make_passages_differ() {
+    let text = "(bearing: \"6205\", model: reduced(), film: None, defect: None, housing: rigid(mass_kg: 10), \
+        defects: [(form: spall(length_mm: 1, depth_mm: 0.05, edge: rectangular, ragged_um: 20))], \
+        operation: (load_n: 500, speed_rpm: 1800, gravity_m_s2: 0), output: (frames: None, interval_us: 20), \
+        solver: (duration_ms: 500, mass_damping_per_s: 5000))";
+    let scene = |text: &str| Scene::parse(text, "here").expect("a scene");
+    let (ragged, straight) = (scene(text), scene(&text.replace(", ragged_um: 20", "")));
+    let folder = Scratch::create("reduced-ragged");
+    // Standard deviation of the blows over their mean: the range of the force of all elements in each passage.
+    let scatter = |scene: &Scene, name: &str| {
+        assert_eq!(run(scene, &folder, name, 1).status, Status::Complete);
+        let trace = trace(&folder, name);
+        let mut force = vec![0.0; channel(&trace, "roller.1.outer_fy_n").len()];
+        for i in 1..=scene.bearing.rollers {
+            let of = channel(&trace, &format!("roller.{i}.outer_fy_n"));
+            force.iter_mut().zip(of).for_each(|(sum, f)| *sum += f);
+        }
+        let passage = (scene.kinematics().bpfo_hz * 20e-6).recip() as usize;
+        let range = |part: &[f64]| {
+            part.iter().copied().fold(f64::MIN, f64::max) - part.iter().copied().fold(f64::MAX, f64::min)
+        };
+        let blows: Vec<f64> = force[5000..].chunks_exact(passage).map(range).collect();
+        let mean = blows.iter().sum::<f64>() / blows.len() as f64;
+        (blows.iter().map(|blow| (blow / mean - 1.0).powi(2)).sum::<f64>() / blows.len() as f64).sqrt()
+    };
+    let (of_straight, of_ragged) = (scatter(&straight, "straight"), scatter(&ragged, "ragged"));
+    // Blows of straight edges differ, too: the ring still moves from the one before.
+    assert!(of_ragged > 1.5 * of_straight, "{of_ragged} and {of_straight}");
+    let short = ragged.with_overrides(&["solver.duration_ms=60"]).expect("a scene");
+    assert_goes_on_with_the_same_bytes(&short, &Scratch::create("reduced-ragged-on"), 2000);
+}
+
 /// From one start, full and reduced model carry the load on the same rollers at first.
 #[test]
 fn peer_the_reduced_model_starts_as_the_full_one() {
