@@ -239,7 +239,7 @@ impl EnergyInfo {
 pub fn imbalance(a_passage_j: Option<f64>, of_contacts: Option<f64>, of_strain: f64) -> String {
     let share = of_contacts.unwrap_or(of_strain);
     let of = if of_contacts.is_some() { "what contacts dissipate" } else { "the peak strain energy" };
-    let a_passage = a_passage_j.map_or(String::new(), |joules| format!("{:.2e} J a passage, ", joules));
+    let a_passage = a_passage_j.map_or(String::new(), |joules| format!("{:.2} µJ a passage, ", 1e6 * joules));
     format!("{a_passage}{:.3} % of {of}", 100.0 * share)
 }
 
@@ -328,7 +328,7 @@ mod tests {
             contact_heat_j: 0.01,
             passages: 40.0,
         };
-        assert_eq!(energy.in_words(), "1.00e-5 J a passage, 4.000 % of what contacts dissipate");
+        assert_eq!(energy.in_words(), "10.00 µJ a passage, 4.000 % of what contacts dissipate");
         assert_eq!(energy.share_of_heat(), Some(8e-4));
         let frictionless = EnergyInfo { contact_heat_j: 0.0, passages: 0.5, ..energy };
         assert_eq!(frictionless.in_words(), "20.000 % of the peak strain energy");

@@ -159,6 +159,10 @@ impl Judged {
             }
             None => machine,
         };
+        if is_spoilt {
+            // Gaps, marks and rails may come as evenly as another part strikes.
+            decided.unexplained = None;
+        }
         let over = match &decided.first {
             Some(first) => over_period(channel, record.rate_hz, record.segment, first.comb_hz)?,
             None => Vec::new(),
