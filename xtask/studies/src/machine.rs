@@ -15,7 +15,7 @@ use stribeck_scene::scene::{BearingScene, DefectRing, Scene};
 use stribeck_store::run_dir::Run;
 use stribeck_store::run_info::Status;
 
-use crate::analyse::median;
+use crate::rows::median;
 use crate::host::Job;
 use crate::{Host, Rows};
 

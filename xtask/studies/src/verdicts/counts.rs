@@ -10,7 +10,7 @@ use super::baseline::{self, Scores};
 use super::records::{Labelled, Part, SETS, UESTC};
 use super::trial::{self, Outcome, Standing, WITHOUT_SPEED};
 use crate::Rows;
-use crate::analyse::median;
+use crate::rows::median;
 use crate::page::decimals;
 
 /// Results of the verdict and of both baselines for a record.
