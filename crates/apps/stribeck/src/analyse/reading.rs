@@ -249,7 +249,9 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     }
     let whole = gaps::without(channel, &mut notes)?;
     let (channel, from) = (&whole.channel, whole.from);
-    let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
+    // Of a run, or of a table that was written of one.
+    let is_ours = scene.is_some() || channel.name.ends_with("_m_s2");
+    let of_run = || crate::export::unit(&channel.name).filter(|_| is_ours).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
     let scaled = channel.scaled(options.scale).in_unit(unit);
     let (mut machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
