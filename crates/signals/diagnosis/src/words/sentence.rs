@@ -243,7 +243,7 @@ mod tests {
         assert!(says(&Family::expected(Defect::Bsf, 49.861), 99.47).contains("no family of this bearing"));
         // At 12 800 samples a second.
         assert!(
-            says(&bsf, 200.02).contains("once every 64 samples") && !says(&bsf, 201.0).contains("every 64")
+            says(&bsf, 400.04).contains("once every 32 samples") && !says(&bsf, 403.0).contains("every 32")
         );
     }
 }
