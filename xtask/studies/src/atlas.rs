@@ -51,8 +51,8 @@ const ROLLER_MS: f64 = 2400.0;
 /// longest record that is made for them [ms].
 const RESOLUTIONS: f64 = 2.0;
 const LONGEST_MS: f64 = 8000.0;
-/// Energy that may be missing from a run that is all right.
-const LEDGER: f64 = 0.01;
+/// Energy that may be missing, of what contacts dissipate: more is warned of (`guards.energy_warning_percent`).
+const LEDGER: f64 = 0.1;
 /// Sidebands of six that make the right ones.
 const SIDEBANDS: usize = 3;
 /// Resolution of the repetition rate within a passage: impacts last about 1 ms, and three follow the first

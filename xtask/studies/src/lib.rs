@@ -13,7 +13,6 @@
 pub mod integrators;
 pub mod reference;
 
-mod analyse;
 mod atlas;
 mod figure;
 mod host;
@@ -30,7 +29,6 @@ mod rows;
 mod run_time;
 mod runner;
 mod sample;
-mod spalls;
 mod stability;
 mod starts;
 mod verdicts;
@@ -72,8 +70,6 @@ pub enum Study {
     Noise(Flags),
     /// Many bearings, many defects: whether each is diagnosed correctly
     Atlas(Flags),
-    /// Simulated spalls of known length through `stribeck analyse`: whether it finds their lengths
-    Spalls(Flags),
     /// How far the reduced bearing is from the full one, scene by scene
     Reduced(Flags),
     /// Records of machines fitted on one record a rig, beside the measured ones
@@ -94,7 +90,6 @@ impl Study {
             Self::WorkPrecision => "work_precision",
             Self::Noise(_) => "noise",
             Self::Atlas(_) => "atlas",
-            Self::Spalls(_) => "spalls",
             Self::Reduced(_) => "reduced",
             Self::Machine(_) => "machine",
             Self::Verdicts(_) => "verdicts",
@@ -114,7 +109,6 @@ impl Study {
             Self::WorkPrecision => work_precision::measure(host, rows)?,
             Self::Noise(flags) => noise::measure(&runner(flags), rows)?,
             Self::Atlas(flags) => atlas::measure(&runner(flags), rows)?,
-            Self::Spalls(flags) => spalls::measure(&runner(flags), rows)?,
             Self::Reduced(flags) => reduced::measure(&runner(flags), rows)?,
             Self::Machine(options) => machine::measure(options, host, rows)?,
             Self::Verdicts(options) => verdicts::measure(options, host, rows)?,
@@ -207,7 +201,6 @@ pub(crate) fn page_of(study: &str) -> Result<(String, Vec<String>)> {
         "atlas" => atlas::derive(&mut rows),
         "reduced" => reduced::derive(&mut rows),
         "run_time" => run_time::derive(&mut rows),
-        "spalls" => analyse::derive(&mut rows),
         "stability" => stability::derive(&mut rows),
         "verdicts" => verdicts::derive(&mut rows),
         "work_precision" => work_precision::derive(&mut rows),

@@ -15,8 +15,8 @@ use stribeck_scene::scene::{BearingScene, DefectRing, Scene};
 use stribeck_store::run_dir::Run;
 use stribeck_store::run_info::Status;
 
-use crate::analyse::median;
 use crate::host::Job;
+use crate::rows::median;
 use crate::{Host, Rows};
 
 /// Flags of `study machine`.

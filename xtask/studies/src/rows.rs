@@ -114,6 +114,12 @@ fn fields(line: &str) -> Vec<String> {
     all
 }
 
+/// The middle value, the upper one of an even number.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -23,7 +23,10 @@ pub struct Options {
 
 /// What is made, and by which command; `DIR` is the folder.
 const STEPS: [(&str, &[&str]); 5] = [
-    ("A scene: a 6205 with a spall of 2 mm on its outer raceway.", &["new", "DIR/bearing.ron", "--yes"]),
+    (
+        "A scene: a 6205 with a spall of 2 mm on its inner raceway.",
+        &["new", "DIR/bearing.ron", "--defect", "inner", "--load-n", "500", "--yes"],
+    ),
     (
         "It turns for a second, and leaves a page.",
         &["simulate", "DIR/bearing.ron", "--out", "DIR/run", "--quiet"],
@@ -56,6 +59,8 @@ const STEPS: [(&str, &[&str]); 5] = [
             "6205",
             "--speed-rpm",
             "1500",
+            "--load-n",
+            "500",
             "--out",
             "DIR/verdict",
             "--quiet",

@@ -195,7 +195,7 @@ fn behaves_a_verdict_says_that_it_rests_on_spoilt_samples() {
     let channel = Channel::held("a", clipped);
     let findings = Analysis::of(&channel, RATE_HZ, &Machine::default()).unwrap().findings;
     assert!(
-        findings.verdict.contains("not sound") && findings.verdict.contains("clipped ("),
+        findings.verdict.contains("are damaged") && findings.verdict.contains("clipped ("),
         "{}",
         findings.verdict
     );
@@ -260,6 +260,18 @@ fn spoilt(x: &[f64], how: usize, part: f64) -> (Kind, Vec<f64>) {
         16 => (Kind::Marked, x.iter().map(|x| if x.abs() < 0.1 + 0.3 * part { 0.0 } else { *x }).collect()),
         17 => (Kind::Jump, (0..count).map(|n| if n < at { x[n] } else { 10.0 * x[n] }).collect()),
         18 => (Kind::Jump, (0..count).map(|n| if n < at { x[n] } else { 8.0 + x[n] }).collect()),
+        19 => {
+            let bytes = |x: f64| f64::from((x as i32).swap_bytes());
+            (Kind::Swapped, whole(2e6 + 4e6 * part).into_iter().map(bytes).collect())
+        }
+        20 => {
+            let (apart, run) = (200 + (800.0 * part) as usize, 1 + (7.0 * part) as usize);
+            (Kind::Marked, (0..count).map(|n| if n % apart < run { -999.0 } else { x[n] }).collect())
+        }
+        21 => {
+            let rail = |n: usize| 0.6 + 0.15 * ((1e-4 + 5e-4 * part) * n as f64).sin();
+            (Kind::DriftingRails, (0..count).map(|n| x[n].clamp(-rail(n), rail(n))).collect())
+        }
         _ => {
             let drift = |n: usize| 0.05 * (3.0 * n as f64 / count as f64).sin();
             (Kind::DriftingRails, (0..count).map(|n| x[n].clamp(-0.8, 0.8) + drift(n)).collect())
@@ -268,7 +280,7 @@ fn spoilt(x: &[f64], how: usize, part: f64) -> (Kind, Vec<f64>) {
 }
 
 /// Ways to spoil a record.
-const WAYS: usize = 20;
+const WAYS: usize = 23;
 
 /// Each kind of damage is named as what it is; the undamaged record has no finding.
 #[test]

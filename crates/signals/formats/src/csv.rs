@@ -27,6 +27,11 @@ use crate::time::says_time;
 use crate::units;
 use crate::{Channel, Error, Recording, Result, clock_columns};
 
+/// The sample rate [Hz] that a text under a name says.
+pub(crate) fn rate_hz(name: &str, text: &str) -> Option<f64> {
+    head::rate_hz(&[format!("{name}: {text}")], Dialect::new(',', false), false)
+}
+
 /// Lines before the first row of numbers, at most.
 const PREAMBLE: usize = 1000;
 /// Lines that show how the table is written.

@@ -51,6 +51,8 @@ struct Object {
     start_offset_s: Option<f64>,
     /// Sample rate by a property such as `SamplingRate` [Hz].
     rate_hz: Option<f64>,
+    /// Why a property that should say it does not.
+    odd_rate: Option<String>,
     unit: Option<String>,
     /// Properties of its scales, by name.
     scales: BTreeMap<String, Property>,
@@ -125,6 +127,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let has_times = objects.values().any(|o| o.start_time_s.is_some());
     let said: HashMap<String, f64> =
         objects.iter().filter_map(|(name, o)| Some((name.clone(), o.rate_hz?))).collect();
+    notes.extend(objects.values().filter_map(|o| o.odd_rate.clone()));
     for path_in_file in known {
         let Some(object) = objects.remove(&path_in_file).filter(|o| o.count > 0 || !o.pieces.is_empty())
         else {
@@ -302,6 +305,8 @@ impl Metadata<'_> {
                         object.increment_unit = Some(value);
                     } else if property.starts_with("NI_") {
                         object.scales.insert(property, Property::Text(value));
+                    } else if let Some(said) = units::rate_in_words(&property, &value) {
+                        object.odd_rate = said.map(|hz| object.rate_hz = Some(hz)).err();
                     }
                 } else {
                     let big_endian = self.big_endian;
@@ -316,6 +321,8 @@ impl Metadata<'_> {
                         object.increment = value;
                     } else if let Some(hz) = value.and_then(|x| units::rate_hz(&property, None, x)) {
                         object.rate_hz = Some(hz);
+                    } else if let Some(why) = value.and_then(|x| units::odd_rate(&property, None, &[x])) {
+                        object.odd_rate = Some(format!("`{property}` {why}"));
                     } else if let (Some(number), true) = (number, property.starts_with("NI_")) {
                         let value = Property::Number(number.decode(bytes));
                         object.scales.insert(property, value);

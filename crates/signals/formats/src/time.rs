@@ -140,10 +140,10 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
                 (None, _) => channel.rate_hz = rate_hz,
                 (Some(said), Some(hz)) if (said / hz - 1.0).abs() > SAME_RATE && !channel.is_time => {
                     recording.notes.push(format!(
-                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: the former is \
-                         taken",
+                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: give the one that holds",
                         channel.name
                     ));
+                    channel.rate_hz = None;
                 }
                 _ => {}
             }

@@ -1,5 +1,7 @@
 //! Units of time, and the names under which files of all formats keep times and rates: one list for all.
 
+use crate::csv;
+
 /// Units of time with their usual spelling and their seconds.
 const TIMES: [(&str, f64, &[&str]); 7] = [
     (
@@ -289,6 +291,14 @@ pub(crate) fn odd_rate(name: &str, unit: Option<&str>, values: &[f64]) -> Option
     }
 }
 
+/// The sample rate [Hz] that a text under the name of a rate or of a time step says, such as `48 kHz`, or why none follows;
+/// nothing under another name.
+pub(crate) fn rate_in_words(name: &str, text: &str) -> Option<Result<f64, String>> {
+    rate_hz(name, None, 1e-3)?;
+    let short: String = text.chars().take(40).collect();
+    Some(csv::rate_hz(name, text).ok_or_else(|| format!("`{name}` is `{}`: no rate follows", short.trim())))
+}
+
 /// Whether a name is that of a time.
 pub fn says_time(name: &str) -> bool {
     let word: String =
@@ -371,6 +381,11 @@ mod tests {
         {
             assert_eq!(rate_hz(name, unit, value), None, "{name}");
         }
+        for text in ["12800", "12.8 kHz", "12.8k", " 12800 Hz"] {
+            assert_eq!(rate_in_words("sampling rate", text), Some(Ok(12_800.0)), "{text}");
+        }
+        assert_eq!(rate_in_words("fs", "nan"), Some(Err("`fs` is `nan`: no rate follows".to_owned())));
+        assert_eq!(rate_in_words("load", "12800"), None);
     }
 
     #[test]

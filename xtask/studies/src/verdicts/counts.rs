@@ -10,8 +10,8 @@ use super::baseline::{self, Scores};
 use super::records::{Labelled, Part, SETS, UESTC};
 use super::trial::{self, Outcome, Standing, WITHOUT_SPEED};
 use crate::Rows;
-use crate::analyse::median;
 use crate::page::decimals;
+use crate::rows::median;
 
 /// Results of the verdict and of both baselines for a record.
 pub(super) struct Judged {

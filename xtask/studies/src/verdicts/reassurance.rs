@@ -11,7 +11,7 @@ use super::counts::{CLASSES, Judged, class, pairs};
 use super::records::{Labelled, SETS, SHORT_BEARING, SHORT_RATE_HZ, ShortRecords};
 use super::trial::{Outcome, Standing};
 use crate::Rows;
-use crate::analyse::median;
+use crate::rows::median;
 
 /// The conclusion on the part that is damaged; of a healthy bearing that on its raceways, of which alone it can be
 /// said that there is no defect.

@@ -249,7 +249,9 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     }
     let whole = gaps::without(channel, &mut notes)?;
     let (channel, from) = (&whole.channel, whole.from);
-    let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
+    // Of a run, or of a table that was written of one.
+    let is_ours = scene.is_some() || channel.name.ends_with("_m_s2");
+    let of_run = || crate::export::unit(&channel.name).filter(|_| is_ours).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
     let scaled = channel.scaled(options.scale).in_unit(unit);
     let (mut machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
@@ -334,7 +336,7 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
     // Times that are damaged do not rise.
     let alone = recording.channels.iter().filter(|c| c.len > 1).count() < 2;
     let is_time = |c: &Channel| c.is_time || says_time(&c.name) && !alone;
-    let signals: Vec<&Channel> = recording.channels.iter().filter(|c| !is_time(c)).collect();
+    let signals: Vec<&Channel> = recording.channels.iter().filter(|c| c.len != 1 && !is_time(c)).collect();
     // Of a run the one that its report judges.
     let found =
         signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
@@ -347,7 +349,9 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
         all => all.iter().find(|c| moves(c)).or_else(|| all.first()),
     };
     let Some(channel) = found.or(first) else {
-        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
+        let times = recording.channels.iter().filter(|c| is_time(c) && c.len > 1);
+        let even = times.map(|c| format!("; `{}` rises evenly, as times or a count do", c.name));
+        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).chain(even).collect();
         bail!(
             "`{}` holds no signal; its channels are {}{notes}",
             recording.path.display(),
@@ -380,8 +384,9 @@ const STEADY: f64 = 0.01;
 /// The speeds that the file says [1/min], each with its name there: that of `rpm`, or all that differ.
 fn speed_in_file(recording: &Recording) -> Result<Vec<(f64, String)>> {
     let mut said: Vec<(f64, String)> = Vec::new();
-    for channel in recording.channels.iter().filter(|c| c.len == 1 && c.name.to_lowercase().contains("rpm")) {
-        let rpm = channel.read()?.first().copied().unwrap_or(f64::NAN);
+    for channel in recording.channels.iter().filter(|c| c.len == 1) {
+        let Some(per_minute) = per_minute(&channel.name.to_lowercase()) else { continue };
+        let rpm = per_minute * channel.read()?.first().copied().unwrap_or(f64::NAN);
         if !(rpm.is_finite() && rpm > 0.0) {
             continue;
         }
@@ -393,6 +398,19 @@ fn speed_in_file(recording: &Recording) -> Result<Vec<(f64, String)>> {
         }
     }
     Ok(said)
+}
+
+/// Turns a minute in the unit of the speed that a name says.
+fn per_minute(name: &str) -> Option<f64> {
+    let is_speed = || ["speed", "shaft", "rotation"].iter().any(|word| name.contains(word));
+    match () {
+        () if name.contains("rpm") => Some(1.0),
+        () if name.contains("rad_s") || name.contains("rad/s") || name == "omega" => {
+            Some(60.0 / std::f64::consts::TAU)
+        }
+        () if is_speed() && name.ends_with("hz") && !name.contains("sampl") => Some(60.0),
+        () => None,
+    }
 }
 
 /// The machine by the flags, and the times of whole turns, in samples, where the speed varies.

@@ -377,7 +377,10 @@ fn behaves_shells_readers_and_scripts_get_what_they_take() {
 fn behaves_the_demonstration_leaves_pages_sound_and_a_verdict() {
     let desk = Desk::new("demo");
     let shown = desk.succeeds("demo");
-    says(&shown, &["$ stribeck simulate stribeck-demo/bearing.ron", "shows a defect of the outer raceway"]);
+    says(&shown, &["$ stribeck simulate stribeck-demo/bearing.ron", "shows a defect of the inner raceway"]);
+    let verdict = desk.json("stribeck-demo/verdict/findings.json");
+    let [low, high] = ["low", "high"].map(|end| verdict["spall_mm"][end].as_f64().expect("a length"));
+    assert!(low < 2.0 && 2.0 < high && high - low < 1.5, "{low} to {high} mm");
     for file in ["run/report.html", "verdict/report.html", "sound.wav", "record.csv"] {
         assert!(desk.join("stribeck-demo").join(file).is_file(), "{file}");
     }

@@ -47,9 +47,7 @@ const MACHINE: &str = "housing=machine(mass_kg: 200)";
 /// direction that the housing takes; THEORY §4.
 #[test]
 fn analytic_every_housing_hands_its_load_to_the_rollers() {
-    for (housing, angle) in
-        [(PEDESTAL, 270.0), (PEDESTAL, 90.0), (MESH, 270.0), (SPRINGS, 200.0), (RIGID, 270.0), (RIGID, 35.0)]
-    {
+    for (housing, angle) in [(PEDESTAL, 90.0), (MESH, 270.0), (SPRINGS, 200.0), (RIGID, 35.0)] {
         let scene = scene(&[housing, &format!("operation.load_angle_deg={angle}")]);
         let folder = Scratch::new("housing");
         let info = run(&scene, &folder);

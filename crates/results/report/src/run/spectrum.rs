@@ -316,7 +316,7 @@ pub(crate) fn loudest_sentences(findings: &Findings) -> Option<[String; 2]> {
         )
     };
     let place = format!(
-        "{share:.0} % of its power ({} of {} g RMS) lie between {} and {} kHz{}.",
+        "{share:.0} % of its power ({} of {} g RMS) lies between {} and {} kHz{}.",
         significant(found.rms, 3),
         significant(found.total_rms, 3),
         kilo(low),

@@ -22,7 +22,7 @@ use crate::Defect;
 /// Load of a bearing over its static rating, where none is given.
 const USUAL: (f64, f64) = (2e-3, 0.1);
 /// The model's own error, as parts of D: a housing that bends makes it longer, an element that has not
-/// settled shorter. By the simulated spalls of docs/results/spalls.md and the outer raceways of HIT-SM.
+/// settled shorter. By simulated spalls and the outer raceways of HIT-SM.
 const MODEL: (f64, f64) = (0.5, 1.5);
 /// Factors of ISO 76 for the static rating: of deep-groove balls, and of rollers [N/mm²].
 const STATIC_BALL: f64 = 13.0;

@@ -170,7 +170,7 @@ pub(crate) fn reservation(found: &[Quality]) -> Option<String> {
         .map(|of| format!("{} ({} of the samples)", of.kind.name(), percent(of.share)))
         .collect();
     (!spoils.is_empty())
-        .then(|| format!("The record is not sound, and the verdict rests on it: {}.", spoils.join(", ")))
+        .then(|| format!("The samples are damaged, and the verdict rests on them: {}.", spoils.join(", ")))
 }
 
 fn percent(share: f64) -> String {

@@ -48,6 +48,13 @@ impl<'a> Told<'a> {
     }
 }
 
+/// The length of a counter or a buffer [samples], a power of two, of which this is one but for chance.
+fn block(samples: f64) -> Option<f64> {
+    const NEAR: f64 = 5e-4;
+    let whole = samples.log2().round().exp2();
+    ((16.0..=65_536.0).contains(&whole) && (samples / whole - 1.0).abs() < NEAR).then_some(whole)
+}
+
 /// Farthest that a speed, or a rate, is off in such a hypothesis, as a part of it.
 const OFF: f64 = 0.07;
 
@@ -118,6 +125,10 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>, t
         );
         return match hypothesis(families, other.hz, told) {
             Some(words) => format!("{at}. {words}; a measured speed would tell."),
+            None if let Some(samples) = block(told.rate_hz / other.hz) => format!(
+                "{at}, once every {samples} samples, which is no family of this bearing: a counter or a buffer of the \
+                 recorder has such a length. Look at the samples there."
+            ),
             None => format!(
                 "{at}, which is no family of this bearing: another part of the machine has them, its converter or \
                  another bearing, or speed or bearing is not what was given. Records of the healthy machine \
@@ -230,5 +241,9 @@ mod tests {
         assert!(says(&bsf, 99.47).contains("where BSF lies beside one of the machine's own lines"));
         assert!(says(&bsf, 90.0).contains("no family of this bearing"));
         assert!(says(&Family::expected(Defect::Bsf, 49.861), 99.47).contains("no family of this bearing"));
+        // At 12 800 samples a second.
+        assert!(
+            says(&bsf, 200.02).contains("once every 64 samples") && !says(&bsf, 201.0).contains("every 64")
+        );
     }
 }

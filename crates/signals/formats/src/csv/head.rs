@@ -103,6 +103,8 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect, commas: bool) -> Option
         let value = value.or_else(|| plain(field()?.0))?;
         // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
         let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);
+        // `25.6k` are thousands, no kelvins.
+        let (value, unit) = if unit == Some("k") { (1e3 * value, None) } else { (value, unit) };
         alone.then(|| units::rate_hz(key, unit, value)).flatten()
     });
     let first = said.next()?;

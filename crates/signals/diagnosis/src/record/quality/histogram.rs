@@ -104,9 +104,14 @@ impl Histogram {
                 peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
             // What fills gaps stands in a few long runs.
             let is_scattered = runs > 1 && 2 * runs > samples(value);
-            is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)
+            is_scattered && apart > FAR
+                || runs >= OFTEN && apart > 1.0
+                || is_often && (apart > 0.1 || !at_rail)
         };
-        let marks = self.frequent.iter().take(MARKS).filter(|at| is_mark(at)).map(|at| self.values[*at].0);
+        // Marks that lie apart are the first or the last value, however seldom.
+        let ends = [0, self.values.len() - 1];
+        let frequent = self.frequent.iter().take(MARKS).filter(|at| !ends.contains(at));
+        let marks = frequent.chain(&ends).filter(|at| is_mark(at)).map(|at| self.values[*at].0);
         marks.map(|value| (value, samples(value))).collect()
     }
 
@@ -156,7 +161,7 @@ impl Histogram {
     /// The step of the converter, where all values are whole numbers of it.
     pub(super) fn quantum(&self) -> Option<f64> {
         let steps =
-            self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-9 * self.range());
+            self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-10 * self.range());
         let mut step = steps.fold(f64::INFINITY, f64::min);
         let (first, last) = (self.sorted[0], self.sorted.len() - 1);
         // Longer spans say it to more digits than one step of rounded numbers does.
@@ -164,7 +169,8 @@ impl Histogram {
             let span = self.sorted[last.min(at)] - first;
             step = if span > 0.0 { span / (span / step).round() } else { step };
         }
-        let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.05;
-        (self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole)).then_some(step)
+        // Whole numbers that are few have larger steps.
+        let is_whole = |step: &f64| self.sorted.iter().all(|x| (x / step - (x / step).round()).abs() < 0.05);
+        [step, 1.0].into_iter().find(|step| self.range() / step < 4.4e9 && is_whole(step))
     }
 }

@@ -108,8 +108,9 @@ pub(super) fn repeats(samples: &[f64]) -> Option<Repeats> {
     (found.samples > 0).then_some(found)
 }
 
-/// Samples over which a rail hardly drifts, and bands below the highest of them, of these parts of the range.
-const NEAR: usize = 512;
+/// Samples over which a slow rail, and a faster one, hardly drifts, and bands below the highest of them, of these parts
+/// of the range.
+const NEAR: [usize; 2] = [512, 128];
 const WIDTHS: [f64; 2] = [1.0 / 256.0, 1.0 / 128.0];
 const BANDS: usize = 17;
 /// How many samples a stretch the outermost band holds, and how many times as many as any other.
@@ -119,14 +120,16 @@ const OVER: f64 = 5.0;
 
 /// Share of the samples that pile up at the highest or the lowest of their neighbourhood.
 pub(super) fn piled(samples: &[f64], range: f64) -> Option<f64> {
-    let share = |sign: f64, width: f64| {
+    let finite = || samples.iter().copied().filter(|x| x.is_finite());
+    let all = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
+    let share = |sign: f64, near: usize, width: f64| {
         let mut bands = [0.0; BANDS];
         let mut stretches = 0.0;
-        for near in samples.chunks_exact(NEAR) {
+        for near in samples.chunks_exact(near) {
             let most = near.iter().map(|x| sign * x).fold(f64::NEG_INFINITY, f64::max);
             let least = near.iter().map(|x| sign * x).fold(f64::INFINITY, f64::min);
             // A silent stretch lies near its highest sample.
-            if most - least < 0.25 * range {
+            if most - least < 0.25 * range.min(all) {
                 continue;
             }
             stretches += 1.0;
@@ -143,6 +146,9 @@ pub(super) fn piled(samples: &[f64], range: f64) -> Option<f64> {
         let next = bands[1..].iter().copied().fold(1.0, f64::max);
         (bands[0] > PILED * stretches && bands[0] > OVER * next).then_some(bands[0] / samples.len() as f64)
     };
-    let [above, below] = [1.0, -1.0].map(|sign| WIDTHS.into_iter().find_map(|width| share(sign, width)));
+    let any = |sign: f64| {
+        NEAR.into_iter().find_map(|near| WIDTHS.into_iter().find_map(|width| share(sign, near, width)))
+    };
+    let [above, below] = [1.0, -1.0].map(any);
     (above.is_some() || below.is_some()).then(|| above.unwrap_or(0.0) + below.unwrap_or(0.0))
 }
