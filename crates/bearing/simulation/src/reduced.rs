@@ -134,7 +134,7 @@ fn wanted(scene: &ResolvedScene) -> ReducedScene {
 }
 
 /// Share of the approach of the most loaded roller that may bend between rollers in none of the modes; beyond
-/// it forces of rollers are off by three per cent and more (docs/notes/reduced.md).
+/// it forces of rollers are off by per cents (docs/guide/src/reduced.md).
 const LEFT_OUT: f64 = 0.15;
 
 /// A warning where the raceway bends between rollers in more than the modes, by some length [m] at the

@@ -281,7 +281,7 @@ fn house(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
 }
 
 /// Modes of rings smaller or larger than the paper's, where the user gave none: small bearings with 60 kHz
-/// have the forces of the full model to 1 % (docs/notes/reduced.md), and 30 kHz are as good for the paper's.
+/// have nearly the forces of the full model (docs/guide/src/reduced.md), and 30 kHz are as good for the paper's.
 fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     let across = across(scene);
     if let ModelScene::Reduced(reduced) = &mut scene.model
