@@ -208,7 +208,10 @@ impl Found {
         let kind = dataset.datatype()?;
         if !number && plain(&kind).is_none() {
             let texts = matches!(dataset.dtype()?, DType::String | DType::VariableLengthString);
-            if texts || matches!(dataset.dtype()?, DType::ObjectReference) {
+            let short = name.rsplit('.').next().unwrap_or(name);
+            if texts && units::rate_hz(short, None, 1e-3).is_some() {
+                self.notes.push(format!("`{name}` is a text{}", units::NO_RATE));
+            } else if texts || matches!(dataset.dtype()?, DType::ObjectReference) {
                 self.left_out += 1;
             } else {
                 let what = match dataset.dtype()? {
@@ -255,7 +258,7 @@ impl Found {
         }
         let axes = Some(axes);
         let streamed = match (&axes, plain(&dataset.datatype()?)) {
-            (Some(axes), Some(number)) => self.streamed(dataset, number, &shape, axes)?,
+            (Some(axes), Some(number)) => self.streamed((dataset, name), number, &shape, axes)?,
             _ => None,
         };
         let channels = match streamed {
@@ -311,8 +314,8 @@ impl Found {
 
     /// Channels whose samples stay in the file.
     fn streamed(
-        &self,
-        dataset: &Dataset,
+        &mut self,
+        (dataset, name): (&Dataset, &str),
         number: Number,
         shape: &[u64],
         axes: &Axes,
@@ -341,6 +344,12 @@ impl Found {
             Layout::Chunked { .. } if !shape.is_empty() => {
                 let columns =
                     hdf5_chunks::columns(&self.path, FORMAT, dataset, number, axes.along, axes.across)?;
+                if let Some((missing, first)) = columns.iter().flatten().find_map(|of| of.missing(len)) {
+                    self.notes.push(format!(
+                        "`{name}`: {missing} of {len} samples were never written, from sample {first} on; they are \
+                         taken for missing, as the fill value that stands for them is none of the sensor's"
+                    ));
+                }
                 Ok(columns.map(|all| all.into_iter().map(|of| Channel::new("", len, of)).collect()))
             }
             _ => Ok(None),
@@ -439,13 +448,12 @@ fn rates(attributes: &HashMap<String, AttrValue>, notes: &mut Vec<String>) -> Op
             None => value.as_str().and_then(|text| units::rate_in_words(name, text)),
         };
         match said {
-            Some(Ok(hz)) => found.push(hz),
+            Some(Ok(hz)) => found.push((name.clone(), hz)),
             Some(Err(why)) => notes.push(why),
             None => {}
         }
     }
-    // Attributes that contradict each other are ignored.
-    found.first().copied().filter(|first| found.iter().all(|hz| (hz / first - 1.0).abs() < 1e-3))
+    units::agreed(&found, notes)
 }
 
 /// Why chunks cannot be unpacked, where a filter is unknown.

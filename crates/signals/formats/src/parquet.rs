@@ -220,14 +220,15 @@ pub fn open(path: &Path) -> Result<Recording> {
     let columns = reader.metadata().file_metadata().schema_descr().columns().to_vec();
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let given = reader.metadata().file_metadata().key_value_metadata();
-    let mut rate_hz = None;
+    let mut said = Vec::new();
     for note in given.into_iter().flatten() {
         match note.value.as_ref().and_then(|text| units::rate_in_words(&note.key, text)) {
-            Some(Ok(hz)) => rate_hz = Some(hz),
+            Some(Ok(hz)) => said.push((note.key.clone(), hz)),
             Some(Err(why)) => notes.push(why),
             None => {}
         }
     }
+    let rate_hz = units::agreed(&said, &mut notes);
     let pandas = given
         .and_then(|all| all.iter().find(|note| note.key == "pandas"))
         .and_then(|note| note.value.as_deref());

@@ -52,10 +52,11 @@ pub fn open(path: &Path) -> Result<Recording> {
                     let rate_hz = u32::from(half(4)) | u32::from(half(6)) << 16;
                     let said = Format { code, channels: half(2), rate_hz, bits: half(14) };
                     if let Some(before) = format.filter(|before| *before != said) {
-                        return Err(damaged(&format!(
-                            "it says its format twice: {} Hz and {} bits, then {} Hz and {} bits",
-                            before.rate_hz, before.bits, said.rate_hz, said.bits
-                        )));
+                        let spelt = |of: Format| {
+                            format!("{} Hz, {} bits, {} channels", of.rate_hz, of.bits, of.channels)
+                        };
+                        let [first, second] = [before, said].map(spelt);
+                        return Err(damaged(&format!("it says its format twice: {first}; then {second}")));
                     }
                     format = Some(said);
                     frame = usize::from(half(12));

@@ -381,36 +381,35 @@ pub(super) fn moves(channel: &Channel) -> bool {
 /// Speeds that vary by more than this part smear the fifth harmonic of a family over several lines.
 const STEADY: f64 = 0.01;
 
-/// The speeds that the file says [1/min], each with its name there: that of `rpm`, or all that differ.
-fn speed_in_file(recording: &Recording) -> Result<Vec<(f64, String)>> {
+/// The speeds that the file says [1/min], each with its name there: that of `rpm`, or all that differ. One that does not
+/// say its unit is noted.
+fn speed_in_file(recording: &Recording, notes: &mut Vec<String>) -> Result<Vec<(f64, String)>> {
     let mut said: Vec<(f64, String)> = Vec::new();
     for channel in recording.channels.iter().filter(|c| c.len == 1) {
-        let Some(per_minute) = per_minute(&channel.name.to_lowercase()) else { continue };
-        let rpm = per_minute * channel.read()?.first().copied().unwrap_or(f64::NAN);
+        let (name, value) =
+            (channel.name.to_lowercase(), channel.read()?.first().copied().unwrap_or(f64::NAN));
+        let of_name = name.contains("rpm").then_some((1.0, false));
+        let Some((factor, _)) = tacho::turns_a_minute(channel).or(of_name) else {
+            if ["speed", "drehzahl", "omega"].contains(&name.rsplit('.').next().unwrap_or(&name)) {
+                notes.push(format!(
+                    "`{}` is {value} and does not say its unit: no speed follows",
+                    channel.name
+                ));
+            }
+            continue;
+        };
+        let rpm = factor * value;
         if !(rpm.is_finite() && rpm > 0.0) {
             continue;
         }
-        if channel.name.eq_ignore_ascii_case("rpm") {
+        if name == "rpm" {
             return Ok(vec![(rpm, channel.name.clone())]);
         }
-        if said.iter().all(|(other, _)| *other != rpm) {
+        if said.iter().all(|(other, _)| (other / rpm - 1.0).abs() > STEADY) {
             said.push((rpm, channel.name.clone()));
         }
     }
     Ok(said)
-}
-
-/// Turns a minute in the unit of the speed that a name says.
-fn per_minute(name: &str) -> Option<f64> {
-    let is_speed = || ["speed", "shaft", "rotation"].iter().any(|word| name.contains(word));
-    match () {
-        () if name.contains("rpm") => Some(1.0),
-        () if name.contains("rad_s") || name.contains("rad/s") || name == "omega" => {
-            Some(60.0 / std::f64::consts::TAU)
-        }
-        () if is_speed() && name.ends_with("hz") && !name.contains("sampl") => Some(60.0),
-        () => None,
-    }
 }
 
 /// The machine by the flags, and the times of whole turns, in samples, where the speed varies.
@@ -427,7 +426,7 @@ fn machine(
         (None, Some(scene)) => Some(catalogue::of_scene(scene)),
         (None, None) => None,
     };
-    let said = speed_in_file(recording)?;
+    let said = speed_in_file(recording, notes)?;
     let mut pulses = None;
     let samples = channel.len;
     let speed_rpm = if let Some(Speed::Of(rpm)) = options.speed_rpm {
