@@ -48,6 +48,16 @@ impl Flat {
         }
     }
 
+    /// Whether a value is that of the run, or as near to it.
+    pub(super) fn goes_on(&self, value: f64, reach: f64) -> bool {
+        self.run.is_some_and(|(run, _)| (run.value - value).abs() <= reach)
+    }
+
+    /// Runs of so many samples and more of a value other than zero.
+    pub(super) fn of_at_least(&self, count: u64) -> Vec<Run> {
+        self.kept.iter().filter(|run| run.count >= count && run.value != 0.0).copied().collect()
+    }
+
     /// Ends the run, as a sample that is no number does, and the end of the record.
     pub(super) fn interrupt(&mut self) {
         let Some((run, is_extreme)) = self.run.take() else { return };
@@ -89,37 +99,4 @@ impl Flat {
 
 /// Shortest straight line that is kept [samples], and how much its steps may differ, over the values.
 pub(super) const STRAIGHT: u64 = 64;
-const ROUNDING: f64 = 1e-12;
-
-/// Runs of equal steps that are not zero: straight lines.
-#[derive(Debug, Default)]
-pub(super) struct Lines {
-    line: Option<(f64, Run)>,
-    kept: Vec<Run>,
-}
-
-impl Lines {
-    /// The step from `value` to the sample `at`.
-    pub(super) fn add(&mut self, value: f64, step: f64, at: u64) {
-        let reach = ROUNDING * (value.abs() + step.abs()) + f64::MIN_POSITIVE;
-        match &mut self.line {
-            Some((before, run)) if (step - *before).abs() <= reach => run.count += 1,
-            _ => {
-                self.interrupt();
-                if step != 0.0 {
-                    let run = Run { value, from: at, count: 1, from_start: false, to_end: false };
-                    self.line = Some((step, run));
-                }
-            }
-        }
-    }
-
-    pub(super) fn interrupt(&mut self) {
-        let long = self.line.take().filter(|(_, run)| run.count >= STRAIGHT && self.kept.len() < KEPT);
-        self.kept.extend(long.map(|(_, run)| run));
-    }
-
-    pub(super) fn kept(&self) -> &[Run] {
-        &self.kept
-    }
-}
+pub(super) const ROUNDING: f64 = 1e-12;

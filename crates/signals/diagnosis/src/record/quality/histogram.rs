@@ -1,5 +1,7 @@
 //! How values are distributed: one that is too frequent, both ends and nothing between, one side alone.
 
+use super::similarity;
+
 /// Values of a stretch of the record, sorted.
 #[derive(Debug)]
 pub(super) struct Histogram {
@@ -70,27 +72,33 @@ impl Histogram {
 
     /// Whether the values span more decades than a sensor has, as numbers of another format do.
     pub(super) fn is_of_another_format(&self) -> bool {
-        const DECADES: f64 = 1e-15;
+        const DECADES: f64 = 1e-12;
         let most = self.sorted[0].abs().max(self.sorted[self.sorted.len() - 1].abs());
         let spread = (self.quantile(0.75) - self.quantile(0.25)).abs();
         self.values.len() > FEW && spread < DECADES * most && spread > 0.0
     }
 
-    /// Values that stand more often than all others, but for those at the rails of a limiter, with their samples.
-    pub(super) fn marks(&self, rails: &[f64]) -> Vec<(f64, usize)> {
+    /// Values that stand more often than all others, but for those at the rails of a limiter, or at even distances where
+    /// few do, with their samples.
+    pub(super) fn marks(&self, samples: &[f64], rails: &[f64]) -> Vec<(f64, usize)> {
         if self.values.len() <= FEW {
             return Vec::new();
         }
+        let some = self.values.iter().filter(|(_, runs)| 2000 * runs > self.sorted.len());
+        // Many are those of a waveform.
+        let spread = 0.5 * (self.quantile(0.75) - self.quantile(0.25));
+        let even = similarity::at_even_distances(samples, some.map(|(value, _)| *value), spread);
+        let even = if even.len() > MARKS { Vec::new() } else { even };
         let usual = self.values[self.frequent[MARKS]].1;
         let (first, last) = (self.sorted[0], self.sorted[self.sorted.len() - 1]);
-        let samples =
+        let count =
             |of: f64| self.sorted.partition_point(|x| *x <= of) - self.sorted.partition_point(|x| *x < of);
         let is_mark = |at: &usize| {
             let (value, runs) = self.values[*at];
             let beside = self.values[at.saturating_sub(2)..(at + 3).min(self.values.len())].iter();
             // The density of a signal is smooth.
             let peaks = beside.filter(|of| of.0 != value).all(|of| runs > 4 * of.1 || of.1 > runs);
-            let others = self.sorted.len() - samples(value);
+            let others = self.sorted.len() - count(value);
             let (lowest, highest) = match value {
                 _ if value == first => (self.sorted[self.sorted.len() - others], last),
                 _ if value == last => (first, self.sorted[others - 1]),
@@ -103,18 +111,30 @@ impl Histogram {
             let is_often =
                 peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
             // What fills gaps stands in a few long runs.
-            let is_scattered = runs > 1 && 2 * runs > samples(value);
-            is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)
+            let is_scattered = runs > 1 && 2 * runs > count(value);
+            is_scattered && apart > FAR
+                || runs >= OFTEN && apart > 1.0
+                || is_often && (apart > 0.1 || !at_rail)
         };
-        let marks = self.frequent.iter().take(MARKS).filter(|at| is_mark(at)).map(|at| self.values[*at].0);
-        marks.map(|value| (value, samples(value))).collect()
+        // Marks that lie apart are the first or the last value, however seldom.
+        let ends = [0, self.values.len() - 1];
+        let frequent = self.frequent.iter().take(MARKS).filter(|at| !ends.contains(at));
+        let often = frequent.chain(&ends).filter(|at| is_mark(at)).map(|at| self.values[*at].0);
+        let mut marks: Vec<f64> = often.chain(even).collect();
+        marks.sort_by(f64::total_cmp);
+        marks.dedup();
+        marks.into_iter().map(|value| (value, count(value))).collect()
+    }
+
+    /// Samples a bin in the outermost two bins of either end, and in the middle half.
+    fn ends_and_middle(&self) -> ([f64; 2], f64) {
+        let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        ([of(&self.bins[..2]), of(&self.bins[BINS - 2..])], of(&self.bins[BINS / 4..BINS * 3 / 4]))
     }
 
     /// Whether values stand at both ends of the range and none in its middle.
     pub(super) fn is_hollow(&self) -> bool {
-        let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-        let (ends, middle) =
-            ([of(&self.bins[..2]), of(&self.bins[BINS - 2..])], of(&self.bins[BINS / 4..BINS * 3 / 4]));
+        let (ends, middle) = self.ends_and_middle();
         let mean = self.sorted.len() as f64 / BINS as f64;
         self.values.len() > FEW && middle < 0.05 * mean && ends.iter().all(|end| *end > mean)
     }
@@ -131,9 +151,8 @@ impl Histogram {
 
     /// Whether the middle of the range is denser than its ends, as that of a uniform density is not.
     pub(super) fn is_domed(&self) -> bool {
-        let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-        let ends = of(&self.bins[..2]).max(of(&self.bins[BINS - 2..]));
-        of(&self.bins[BINS / 4..BINS * 3 / 4]) > 1.2 * ends
+        let (ends, middle) = self.ends_and_middle();
+        middle > 1.2 * ends[0].max(ends[1])
     }
 
     /// Whether all values lie on one side of zero, and most of them near it.
@@ -156,7 +175,7 @@ impl Histogram {
     /// The step of the converter, where all values are whole numbers of it.
     pub(super) fn quantum(&self) -> Option<f64> {
         let steps =
-            self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-9 * self.range());
+            self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-10 * self.range());
         let mut step = steps.fold(f64::INFINITY, f64::min);
         let (first, last) = (self.sorted[0], self.sorted.len() - 1);
         // Longer spans say it to more digits than one step of rounded numbers does.
@@ -165,6 +184,8 @@ impl Histogram {
             step = if span > 0.0 { span / (span / step).round() } else { step };
         }
         let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.05;
-        (self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole)).then_some(step)
+        let in_steps = self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole);
+        // Whole numbers of which few are there have larger steps than one.
+        in_steps.then_some(step).or_else(|| self.sorted.iter().all(|x| x.fract() == 0.0).then_some(1.0))
     }
 }

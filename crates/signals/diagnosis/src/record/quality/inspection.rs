@@ -1,6 +1,6 @@
 //! The inspection of samples as they are read: each finding that needs no spectrum, and its words.
 
-use super::flat::{self, Flat, Lines, Run};
+use super::flat::{self, Flat, Run};
 use super::histogram::Histogram;
 use super::rails::{Rail, Rails};
 use super::similarity::{self, Pattern, Repeats};
@@ -49,10 +49,6 @@ struct Stays {
 /// Part of the record from which on a channel that stands still at its end is dead.
 const LEAST_END: f64 = 0.01;
 
-/// What gaps mean, and what to do.
-const NO_SIGNAL: &str = "there is no signal in them, and levels and kurtosis are not those of the machine. Leave \
-                         the field empty in their place, or cut the record there";
-
 /// An inspection in the making.
 #[derive(Debug)]
 pub(crate) struct Inspection {
@@ -60,7 +56,8 @@ pub(crate) struct Inspection {
     values: Rails,
     steps: Rails,
     flat: Flat,
-    lines: Lines,
+    /// Steps: straight lines have equal ones.
+    lines: Flat,
     stretches: Vec<Stretch>,
     /// Samples of a stretch.
     length: usize,
@@ -81,7 +78,7 @@ impl Inspection {
             values: Rails::with_levels(),
             steps: Rails::default(),
             flat: Flat::default(),
-            lines: Lines::default(),
+            lines: Flat::default(),
             stretches: vec![Stretch::default(); len.div_ceil(length).max(1)],
             length,
             origin: None,
@@ -111,7 +108,9 @@ impl Inspection {
                 && (x - last).is_finite()
             {
                 self.steps.add(x - last, true);
-                self.lines.add(last, x - last, at);
+                let reach = flat::ROUNDING * (last.abs() + (x - last).abs()) + f64::MIN_POSITIVE;
+                let goes_on = self.lines.goes_on(x - last, reach);
+                self.lines.add(x - last, at, !goes_on, false);
                 stretch.squares[1] += (x - last).powi(2);
                 stretch.squares[2] += (x - last - self.step).powi(2);
                 self.step = x - last;
@@ -131,13 +130,18 @@ impl Inspection {
         let few = self.values.few_levels();
         let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
         let rails = self.rails(few.is_some(), &[&ends[..], &gaps].concat());
-        let mut found = self.no_signal(kept, &rails, few.is_some());
-        // Values at both ends of numbers without their sign stand at no rail.
-        if found.iter().all(|of| of.kind != Kind::SignLost) {
+        // Where the channel stands still at an end of the record it says nothing of the rest.
+        let from = ends.iter().filter(|run| run.from_start).map(|run| run.count as usize).max().unwrap_or(0);
+        let to =
+            ends.iter().filter(|run| run.to_end).map(|run| run.from as usize).min().unwrap_or(kept.len());
+        let live = kept.get(from..to.min(kept.len())).unwrap_or(&[]);
+        let mut found = self.no_signal(live, from, &rails, few.is_some());
+        // Values at both ends of numbers without their sign stand at no rail, nor do marks.
+        if found.iter().all(|of| !matches!(of.kind, Kind::SignLost | Kind::Marked)) {
             found.extend(self.clipped(&rails, &at_rail));
         }
         found.extend(ends.iter().map(|run| self.dead(run)));
-        if few.is_none() {
+        if few.is_none() && found.iter().all(|of| of.kind != Kind::Marked) {
             found.extend(self.held(&gaps));
         }
         found.extend(self.straight());
@@ -159,24 +163,43 @@ impl Inspection {
         found
     }
 
-    /// By which the samples are no record of a signal.
-    fn no_signal(&self, kept: &[f64], rails: &[Rail], few_levels: bool) -> Vec<Quality> {
+    /// By which the samples, `from` the given one on, are no record of a signal.
+    fn no_signal(&self, kept: &[f64], from: usize, rails: &[Rail], few_levels: bool) -> Vec<Quality> {
         let Some(histogram) = Histogram::of(kept) else { return Vec::new() };
         let whole = |kind, words: String| self.quality(kind, 1.0, 0, words);
+        if let Some((period, rise)) = similarity::counter(kept) {
+            return vec![whole(
+                Kind::Pattern,
+                format!(
+                    "a counter: in every {period} samples the values rise evenly by {} and fall back at once, as a count \
+                     of samples or of bytes does; it stands in place of a signal, or lies over it. Take the channel \
+                     of the sensor, or read the file with the layout of its recorder",
+                    spelt(rise)
+                ),
+            )];
+        }
+        if histogram.is_of_another_format() {
+            return vec![whole(Kind::Swapped, "values over more decades than a sensor has: the bytes of the numbers stand in the other \
+                order, or they are numbers of another format. Read them with the order of bytes of their recorder".to_owned())];
+        }
         let repeats = similarity::repeats(kept);
         // A gap, or a glitch, says nothing of places.
         let (low, high) = histogram.usual();
         let usual: Vec<f64> = kept.iter().map(|x| x.clamp(low, high)).collect();
-        let pattern = self.pattern(&usual, repeats.is_some_and(|repeats| repeats.is_waveform));
+        let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
+        let marks = if few_levels { None } else { self.marks(kept, &histogram, &values) };
+        // Of few levels some places have more by chance, and so they do of marks.
+        let is_waveform = repeats.is_some_and(|repeats| repeats.is_waveform);
+        let pattern = self.pattern(&usual, !few_levels && !is_waveform && marks.is_none());
         let mut found: Vec<Quality> = pattern.into_iter().collect();
-        found.extend(
-            repeats.filter(|repeats| !repeats.is_waveform).map(|repeats| self.repeated(kept, repeats)),
-        );
-        if found.is_empty() && !few_levels {
-            let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
-            found.extend(self.marks(&histogram, &values));
+        found
+            .extend(repeats.filter(|_| !is_waveform).map(|repeats| self.repeated(kept.len(), from, repeats)));
+        if found.is_empty() {
+            found.extend(marks);
         }
-        let piled = similarity::piled(kept, 0.5 * (high - low)).filter(|_| rails.is_empty());
+        let quantum = histogram.quantum();
+        let is_apart = rails.is_empty() && !few_levels;
+        let piled = is_apart.then(|| similarity::piled(kept, quantum.unwrap_or(0.0))).flatten();
         let across = jumps::crossings(kept, histogram.range());
         if let Some(share) = piled {
             found.push(self.quality(Kind::DriftingRails, share, 0, format!(
@@ -186,12 +209,9 @@ impl Inspection {
                 percent(share)
             )));
         } else if found.is_empty() && (rails.is_empty() || histogram.is_hollow()) {
-            found.extend(self.wrapped(kept, &histogram, across));
+            found.extend(self.wrapped(kept, &histogram, quantum, across));
         }
-        if histogram.is_of_another_format() {
-            found.push(whole(Kind::Swapped, "values over more decades than a sensor has: the bytes of the numbers stand in the other \
-                order, or they are numbers of another format. Read them with the order of bytes of their recorder".to_owned()));
-        } else if found.is_empty() && rails.is_empty() && histogram.is_one_sided() {
+        if found.is_empty() && rails.is_empty() && histogram.is_one_sided() {
             found.push(whole(
                 Kind::SignLost,
                 "sign lost: all values lie on one side of zero, and most of them near it, as those of a \
@@ -203,9 +223,9 @@ impl Inspection {
     }
 
     /// Samples that stand many times, zeros between samples, channels one after the other.
-    fn pattern(&self, kept: &[f64], of_waveform: bool) -> Option<Quality> {
+    fn pattern(&self, kept: &[f64], may_differ: bool) -> Option<Quality> {
         let (places, kind) =
-            similarity::pattern(kept).filter(|(_, kind)| *kind != Pattern::Unlike || !of_waveform)?;
+            similarity::pattern(kept).filter(|(_, kind)| *kind != Pattern::Unlike || may_differ)?;
         let lower = self.rate_hz / places as f64;
         let words = match kind {
             Pattern::Held => format!(
@@ -227,9 +247,9 @@ impl Inspection {
     }
 
     /// Stretches that stand twice.
-    fn repeated(&self, kept: &[f64], repeats: Repeats) -> Quality {
+    fn repeated(&self, of: usize, from: usize, repeats: Repeats) -> Quality {
         let Repeats { samples, first, lag, .. } = repeats;
-        let share = samples as f64 / kept.len() as f64;
+        let (share, first) = (samples as f64 / of as f64, from + first);
         let words = format!(
             "repeated: {} of the samples stand a second time, to the last bit, the first of them {lag} samples behind \
              their like; a recorder wrote a buffer twice. Cut the record at {:.4} s",
@@ -240,8 +260,8 @@ impl Inspection {
     }
 
     /// Values that are too frequent to be measured.
-    fn marks(&self, histogram: &Histogram, rails: &[f64]) -> Option<Quality> {
-        let marks = histogram.marks(rails);
+    fn marks(&self, kept: &[f64], histogram: &Histogram, rails: &[f64]) -> Option<Quality> {
+        let marks = histogram.marks(kept, rails);
         let share = marks.iter().map(|(_, samples)| self.part(*samples as u64)).sum::<f64>();
         let each: Vec<String> = marks
             .iter()
@@ -256,9 +276,14 @@ impl Inspection {
     }
 
     /// Values that leave the range at one end and come back at the other.
-    fn wrapped(&self, kept: &[f64], histogram: &Histogram, across: usize) -> Option<Quality> {
+    fn wrapped(
+        &self,
+        kept: &[f64],
+        histogram: &Histogram,
+        quantum: Option<f64>,
+        across: usize,
+    ) -> Option<Quality> {
         let (low, high) = (histogram.quantile(0.0), histogram.quantile(1.0));
-        let quantum = histogram.quantum();
         let full = quantum.and_then(|quantum| jumps::full_range(low, high, quantum));
         let share = across as f64 / kept.len() as f64;
         let hollow = histogram.is_hollow() && share > 0.01;
@@ -400,7 +425,6 @@ impl Inspection {
     /// Gaps that were filled with one value, or with the last one.
     fn held(&self, gaps: &[Run]) -> Option<Quality> {
         let first = gaps.first()?;
-        let share = self.part(gaps.iter().map(|run| run.count).sum());
         let longest = gaps.iter().map(|run| run.count).max().unwrap_or(0);
         let with = if gaps.iter().any(|run| run.value != first.value) {
             "the value before, as a recorder bridges gaps".to_owned()
@@ -409,24 +433,27 @@ impl Inspection {
         } else {
             format!("{}, as a recorder marks gaps", spelt(first.value))
         };
-        let words = format!(
-            "filled gaps: {} of up to {longest} samples ({} of the samples) stand still at {with}; {NO_SIGNAL}",
-            stretches(gaps.len()),
-            percent(share)
-        );
-        Some(self.quality(Kind::Held, share, first.from, words))
+        self.filled(gaps, &format!("of up to {longest} samples"), &format!("stand still at {with}"))
     }
 
     /// Gaps that were filled with straight lines.
     fn straight(&self) -> Option<Quality> {
-        let kept = self.lines.kept();
-        let first = kept.first()?;
-        let share = self.part(kept.iter().map(|run| run.count).sum());
+        let length = format!("of {} samples and more", flat::STRAIGHT);
+        self.filled(
+            &self.lines.of_at_least(flat::STRAIGHT),
+            &length,
+            "are straight lines, as a recorder bridges gaps",
+        )
+    }
+
+    /// Gaps of a length that were filled in some way.
+    fn filled(&self, gaps: &[Run], length: &str, how: &str) -> Option<Quality> {
+        let first = gaps.first()?;
+        let share = self.part(gaps.iter().map(|run| run.count).sum());
         let words = format!(
-            "filled gaps: {} of {} samples and more ({} of the samples) are straight lines, as a recorder \
-             bridges gaps; {NO_SIGNAL}",
-            stretches(kept.len()),
-            flat::STRAIGHT,
+            "filled gaps: {} {length} ({} of the samples) {how}; there is no signal in them, and levels and kurtosis \
+             are not those of the machine. Leave the field empty in their place, or cut the record there",
+            stretches(gaps.len()),
             percent(share)
         );
         Some(self.quality(Kind::Held, share, first.from, words))
