@@ -28,7 +28,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let mut file = BufReader::new(File::open(path).map_err(io)?);
     let size = file.get_ref().metadata().map_err(io)?.len();
     let mut at = 12;
-    let (mut format, mut frame, mut long_data) = (None, 0, None);
+    let (mut format, mut frame, mut long_data) = (None::<Format>, 0, None);
     let mut pieces: Vec<Recording> = Vec::new();
     while at + 8 <= size {
         file.seek(SeekFrom::Start(at)).map_err(io)?;
@@ -50,7 +50,15 @@ pub fn open(path: &Path) -> Result<Recording> {
                 } else {
                     let code = if half(0) == EXTENSIBLE { half(24) } else { half(0) };
                     let rate_hz = u32::from(half(4)) | u32::from(half(6)) << 16;
-                    format = Some(Format { code, channels: half(2), rate_hz, bits: half(14) });
+                    let said = Format { code, channels: half(2), rate_hz, bits: half(14) };
+                    if let Some(before) = format.filter(|before| *before != said) {
+                        let spelt = |of: Format| {
+                            format!("{} Hz, {} bits, {} channels", of.rate_hz, of.bits, of.channels)
+                        };
+                        let [first, second] = [before, said].map(spelt);
+                        return Err(damaged(&format!("it says its format twice: {first}; then {second}")));
+                    }
+                    format = Some(said);
                     frame = usize::from(half(12));
                 }
             }

@@ -6,7 +6,7 @@ pub const PCM: u16 = 1;
 pub const FLOAT: u16 = 3;
 
 /// Content of the chunk `fmt`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Format {
     /// [`PCM`], [`FLOAT`], or another code, which is not written here.
     pub code: u16,

@@ -575,6 +575,14 @@ fn issue_pieces_of_a_wav_are_joined_and_pipes_are_refused() {
         samples.len()
     );
     notes(&found, &["2 pieces"]);
+    // A second format that differs says that the first does not hold.
+    let mut twice = wav(b"RIFF", 2000, &bytes(0), &[]);
+    let format = twice[12..36].to_vec();
+    twice.splice(36..36, format);
+    assert_eq!(opened(&desk, "same.wav", &twice).channels[0].len, 1000);
+    twice[48] ^= 1;
+    std::fs::write(desk.join("other.wav"), &twice).unwrap();
+    assert_refused(Recording::open(desk.join("other.wav")), "says its format twice");
     #[cfg(unix)]
     assert_refused(Recording::open("/dev/null"), "a pipe or a device");
 }
