@@ -107,7 +107,7 @@ pub(crate) fn without_doubles(channels: &mut [Channel], clock: usize) -> Result<
     let times = channels[clock].read()?;
     let double: Vec<bool> = (0..times.len()).map(|row| row > 0 && times[row] == times[row - 1]).collect();
     let count = double.iter().filter(|is| **is).count();
-    if count == 0 || 5 * count > times.len() {
+    if count == 0 || 2 * count > times.len() {
         return Ok(None);
     }
     let (len, group) = (channels[clock].len, channels[clock].group.clone());
