@@ -2,7 +2,7 @@
 //! `x_values.increment` with its unit in `x_values.quantity.label`, and the unit of the values in
 //! `y_values.quantity.label`.
 
-use crate::units::{rounded_rate, seconds};
+use crate::units::{rounded, seconds};
 use crate::{Channel, Result};
 
 /// Names of the struct of the first axis, and of its members.
@@ -32,7 +32,7 @@ pub(crate) fn told(channels: &mut [Channel], texts: &[(String, String)]) -> Resu
         let Some((_, second)) = unit_of(axis).and_then(seconds) else { continue };
         let step_s = number(&step.name)?.filter(|step| *step > 0.0).map(|step| second * step);
         let start_s = number(&format!("{axis}.{START}"))?.map(|start| second * start);
-        axes.extend(step_s.map(|step_s| (parent.to_owned(), rounded_rate(1.0 / step_s), start_s)));
+        axes.extend(step_s.map(|step_s| (parent.to_owned(), rounded(1.0 / step_s), start_s)));
     }
     for channel in channels.iter_mut().filter(|c| c.len > 1) {
         let own = axes.iter().filter(|(parent, ..)| channel.name.starts_with(parent.as_str()));

@@ -27,6 +27,11 @@ use crate::time::says_time;
 use crate::units;
 use crate::{Channel, Error, Recording, Result, clock_columns};
 
+/// The sample rate [Hz] that a text under a name says.
+pub(crate) fn rate_hz(name: &str, text: &str) -> Option<f64> {
+    head::rate_of(&format!("{name}: {text}"), Dialect::new(',', false), false)
+}
+
 /// Lines before the first row of numbers, at most.
 const PREAMBLE: usize = 1000;
 /// Lines that show how the table is written.
@@ -119,7 +124,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     dialect.day_first = day_comes_first(path, coding, dialect, &start[first..])?;
     let commas = dialect.decimal_comma && start[first..].iter().any(|line| line.contains(','));
-    let rate_hz = head::rate_hz(&start[..first], dialect, commas);
+    let mut notes = Vec::new();
+    let rate_hz = head::rate_hz(&start[..first], dialect, commas, &mut notes);
     let numbers = columns_of_numbers(rows.first().map_or("", |row| row.as_str()), dialect);
     while first > 0
         && (is_damaged_row(&start[first - 1], dialect, columns)
@@ -146,7 +152,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         let size = start[first - 1].trim();
         counted.2.push(format!("line {first}, `{size}`, says how many samples there are: it is none itself"));
     }
-    let (census, rows, mut notes) = counted;
+    let (census, rows, more) = counted;
+    notes.extend(more);
     let mut channels = Vec::new();
     let sparse = census.iter().filter(|of| of.missing > rows / RARELY && of.missing < rows).count();
     let origin_s = census.iter().find_map(|census| census.origin_s).unwrap_or(0);

@@ -13,7 +13,7 @@ use stribeck_dsp::channel::memory;
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::{Strided, held_from};
-use crate::{Channel, Error, Recording, Result, axis_structs, shape};
+use crate::{Channel, Error, Recording, Result, axis_structs, shape, units};
 
 const FORMAT: &str = "MATLAB 5";
 const HEADER: u64 = 128;
@@ -112,8 +112,15 @@ pub fn open(path: &Path) -> Result<Recording> {
         found.channels.retain(|channel| at_all.next() < Some(before) || !channel.name.is_empty());
         at += 8 + length;
     }
-    let Found { mut channels, texts, notes, .. } = found;
+    let Found { mut channels, texts, mut notes, .. } = found;
     axis_structs::told(&mut channels, &texts)?;
+    for (name, text) in &texts {
+        match units::rate_in_words(name.rsplit('.').next().unwrap_or(name), text) {
+            Some(Ok(hz)) => channels.push(Channel::held(name.clone(), vec![hz])),
+            Some(Err(why)) => notes.push(why),
+            None => {}
+        }
+    }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 

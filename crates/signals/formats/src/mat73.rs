@@ -127,7 +127,8 @@ impl Found {
     /// Adds the channels of a group; unreadable ones are noted, and do not affect the rest.
     fn group(&mut self, group: &Group, prefix: &str, trail: &mut Vec<String>) {
         if let Ok(attributes) = group.attrs() {
-            self.rates.extend(rates(&attributes, prefix));
+            let said = rates(&attributes, &mut self.notes);
+            self.rates.extend(said.map(|hz| (prefix.to_owned(), hz)));
         }
         let (sets, groups) = match (group.iter_datasets(), group.iter_groups()) {
             (Ok(sets), Ok(groups)) => (
@@ -207,7 +208,10 @@ impl Found {
         let kind = dataset.datatype()?;
         if !number && plain(&kind).is_none() {
             let texts = matches!(dataset.dtype()?, DType::String | DType::VariableLengthString);
-            if texts || matches!(dataset.dtype()?, DType::ObjectReference) {
+            let short = name.rsplit('.').next().unwrap_or(name);
+            if texts && units::rate_hz(short, None, 1e-3).is_some() {
+                self.notes.push(format!("`{name}` is a text{}", units::NO_RATE));
+            } else if texts || matches!(dataset.dtype()?, DType::ObjectReference) {
                 self.left_out += 1;
             } else {
                 let what = match dataset.dtype()? {
@@ -241,7 +245,7 @@ impl Found {
             self.notes.push(left_out(name, &format!("{sizes} numbers are more channels than {COLUMNS}")));
             return Ok(());
         };
-        let rate_hz = rates(&attributes, "").first().map(|(_, hz)| *hz);
+        let rate_hz = rates(&attributes, &mut self.notes);
         let start_s = start_s(&attributes);
         let scale = scale(&attributes);
         let marks = marks(&attributes);
@@ -423,17 +427,27 @@ fn start_s(attributes: &HashMap<String, AttrValue>) -> Option<f64> {
     (!found.is_empty()).then(|| found.iter().sum())
 }
 
-/// The sample rates [Hz] in attributes of a group or a set.
-fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, f64)> {
-    let mut found: Vec<(String, f64)> = attributes
-        .iter()
-        .filter_map(|(name, value)| Some((name.clone(), units::rate_hz(name, None, number(value)?)?)))
-        .collect();
-    found.sort_by(|a, b| a.0.cmp(&b.0));
-    // Attributes that contradict each other are ignored.
-    let same = found.iter().all(|(_, hz)| (hz / found[0].1 - 1.0).abs() < 1e-3);
-    found.truncate(usize::from(same));
-    found.into_iter().map(|(_, hz)| (prefix.to_owned(), hz)).collect()
+/// The sample rate [Hz] in attributes of a group or a set; what should say one and does not is noted.
+fn rates(attributes: &HashMap<String, AttrValue>, notes: &mut Vec<String>) -> Option<f64> {
+    let mut names: Vec<&String> = attributes.keys().collect();
+    names.sort();
+    let mut found = Vec::new();
+    for name in names {
+        let value = &attributes[name];
+        let said = match numbers(value) {
+            Some(all) => match units::odd_rate(name, None, &all) {
+                Some(why) => Some(Err(format!("`{name}` {why}"))),
+                None => all.first().and_then(|x| units::rate_hz(name, None, *x)).map(Ok),
+            },
+            None => value.as_str().and_then(|text| units::rate_in_words(name, text)),
+        };
+        match said {
+            Some(Ok(hz)) => found.push((name.clone(), hz)),
+            Some(Err(why)) => notes.push(why),
+            None => {}
+        }
+    }
+    units::agreed(&found, notes)
 }
 
 /// Why chunks cannot be unpacked, where a filter is unknown.

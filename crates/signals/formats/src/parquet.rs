@@ -21,7 +21,7 @@ use stribeck_dsp::channel::Samples;
 
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
-use crate::{Channel, Error, Recording, Result};
+use crate::{Channel, Error, Recording, Result, units};
 
 const FORMAT: &str = "Parquet";
 
@@ -220,9 +220,15 @@ pub fn open(path: &Path) -> Result<Recording> {
     let columns = reader.metadata().file_metadata().schema_descr().columns().to_vec();
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let given = reader.metadata().file_metadata().key_value_metadata();
-    let rate_hz = given
-        .and_then(|all| all.iter().find(|note| note.key == "rate_hz"))
-        .and_then(|note| note.value.as_ref()?.parse::<f64>().ok());
+    let mut said = Vec::new();
+    for note in given.into_iter().flatten() {
+        match note.value.as_ref().and_then(|text| units::rate_in_words(&note.key, text)) {
+            Some(Ok(hz)) => said.push((note.key.clone(), hz)),
+            Some(Err(why)) => notes.push(why),
+            None => {}
+        }
+    }
+    let rate_hz = units::agreed(&said, &mut notes);
     let pandas = given
         .and_then(|all| all.iter().find(|note| note.key == "pandas"))
         .and_then(|note| note.value.as_deref());

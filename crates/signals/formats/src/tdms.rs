@@ -14,7 +14,7 @@ use crate::curve::along;
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::{Pieces, Strided};
-use crate::units::{rounded_rate, seconds};
+use crate::units::seconds;
 use crate::{Error, Recording, Result, units};
 
 const FORMAT: &str = "TDMS";
@@ -49,8 +49,9 @@ struct Object {
     /// Time of the first sample, since 1904, and what is added to it [s].
     start_time_s: Option<f64>,
     start_offset_s: Option<f64>,
-    /// Sample rate by a property such as `SamplingRate` [Hz].
-    rate_hz: Option<f64>,
+    /// Sample rates by properties such as `SamplingRate` [Hz], and why others that should say one do not.
+    rates: Vec<(String, f64)>,
+    odd_rates: Vec<String>,
     unit: Option<String>,
     /// Properties of its scales, by name.
     scales: BTreeMap<String, Property>,
@@ -61,6 +62,26 @@ struct Object {
     scaler: Option<daqmx::Scaler>,
     foreign: Option<String>,
 }
+
+impl Object {
+    /// All rates that its properties say [Hz], and why others say none: an increment that is no second long is one.
+    fn rates(&self) -> (Vec<(String, f64)>, Vec<String>) {
+        let (mut rates, mut odd) = (self.rates.clone(), self.odd_rates.clone());
+        let second = self.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
+        match self.increment.map(|step| (step, units::rounded(1.0 / (step * second)))) {
+            Some((_, hz)) if hz >= 1.0 && hz.is_finite() => rates.insert(0, (INCREMENT.to_owned(), hz)),
+            Some((step, _)) => {
+                odd.extend(
+                    units::odd_rate(INCREMENT, None, &[step]).map(|why| format!("`{INCREMENT}` {why}")),
+                );
+            }
+            None => {}
+        }
+        (rates, odd)
+    }
+}
+
+const INCREMENT: &str = "wf_increment";
 
 /// Opens a file; a channel is called `group/channel`. Samples stay in the file.
 pub fn open(path: &Path) -> Result<Recording> {
@@ -123,8 +144,14 @@ pub fn open(path: &Path) -> Result<Recording> {
     let groups: HashMap<String, BTreeMap<String, Property>> =
         objects.iter().map(|(name, o)| (name.clone(), o.scales.clone())).collect();
     let has_times = objects.values().any(|o| o.start_time_s.is_some());
-    let said: HashMap<String, f64> =
-        objects.iter().filter_map(|(name, o)| Some((name.clone(), o.rate_hz?))).collect();
+    let mut said: HashMap<String, f64> = HashMap::new();
+    let mut names: Vec<&String> = objects.keys().collect();
+    names.sort();
+    for name in names {
+        let (rates, odd) = objects[name].rates();
+        notes.extend(odd);
+        said.extend(units::agreed(&rates, &mut notes).map(|hz| (name.clone(), hz)));
+    }
     for path_in_file in known {
         let Some(object) = objects.remove(&path_in_file).filter(|o| o.count > 0 || !o.pieces.is_empty())
         else {
@@ -150,10 +177,9 @@ pub fn open(path: &Path) -> Result<Recording> {
                 continue;
             }
         };
-        let second = object.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
-        let step =
-            object.increment.filter(|step| *step > 0.0).map(|step| rounded_rate(1.0 / (step * second)));
-        let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
+        let contradicts = object.rates().0.len() > 1 && !said.contains_key(&path_in_file);
+        let of_others = said.get(group).or(said.get("/")).filter(|_| !contradicts);
+        let rate_hz = said.get(&path_in_file).or(of_others).copied();
         // Where others have a time, one without it has none on their axis.
         let start_s = match object.start_time_s {
             Some(time_s) => Some(time_s + object.start_offset_s.unwrap_or(0.0)),
@@ -302,6 +328,8 @@ impl Metadata<'_> {
                         object.increment_unit = Some(value);
                     } else if property.starts_with("NI_") {
                         object.scales.insert(property, Property::Text(value));
+                    } else if let Some(said) = units::rate_in_words(&property, &value) {
+                        object.odd_rates.extend(said.map(|hz| object.rates.push((property, hz))).err());
                     }
                 } else {
                     let big_endian = self.big_endian;
@@ -312,10 +340,12 @@ impl Metadata<'_> {
                         object.start_time_s = stamp_s(bytes, big_endian);
                     } else if property == "wf_start_offset" {
                         object.start_offset_s = value;
-                    } else if property == "wf_increment" {
+                    } else if property == INCREMENT {
                         object.increment = value;
                     } else if let Some(hz) = value.and_then(|x| units::rate_hz(&property, None, x)) {
-                        object.rate_hz = Some(hz);
+                        object.rates.push((property, hz));
+                    } else if let Some(why) = value.and_then(|x| units::odd_rate(&property, None, &[x])) {
+                        object.odd_rates.push(format!("`{property}` {why}"));
                     } else if let (Some(number), true) = (number, property.starts_with("NI_")) {
                         let value = Property::Number(number.decode(bytes));
                         object.scales.insert(property, value);

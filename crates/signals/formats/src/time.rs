@@ -7,7 +7,7 @@
 mod packets;
 
 pub use crate::units::says_time;
-use crate::units::{self, DATES_S, SLOWEST_S, Unit};
+use crate::units::{self, DATES_S, NO_RATE, SAME_RATE, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result, clock_columns};
 
 /// Samples that are looked at together.
@@ -16,8 +16,6 @@ const STRETCH: usize = 1000;
 const LEAST: usize = 10;
 /// One in this many steps may be a gap.
 const RARE: usize = 250;
-/// Rates that differ by less than this part are one: clocks drift.
-const SAME_RATE: f64 = 1e-3;
 /// How a channel rises.
 #[derive(Debug, Default)]
 struct Course {
@@ -74,7 +72,7 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
         }
     }
-    let said = rates_said(channels, &mut recording.notes);
+    let said = rates_said(channels, &mut recording.notes)?;
     for channel in channels.iter_mut().filter(|c| c.rate_hz.is_none()) {
         let beside = said.iter().filter(|(of, _)| of.is_empty() || *of == parent(&channel.name));
         // The one in the same struct before that of the file.
@@ -140,10 +138,10 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
                 (None, _) => channel.rate_hz = rate_hz,
                 (Some(said), Some(hz)) if (said / hz - 1.0).abs() > SAME_RATE && !channel.is_time => {
                     recording.notes.push(format!(
-                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: the former is \
-                         taken",
+                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: give the one that holds",
                         channel.name
                     ));
+                    channel.rate_hz = None;
                 }
                 _ => {}
             }
@@ -158,10 +156,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
                 recording.notes.extend(packets::why_uneven(channel)?);
             }
         }
-        for channel in channels.iter().filter(|c| c.len < LEAST as u64) {
-            let odd = units::odd_rate(member(&channel.name), channel.unit.as_deref(), &channel.read()?);
-            recording.notes.extend(odd.map(|why| format!("`{}` {why}", channel.name)));
-        }
+    } else {
+        recording.notes.retain(|note| !note.ends_with(NO_RATE));
     }
     Ok(recording)
 }
@@ -218,29 +214,29 @@ pub(crate) fn is_clock(channel: &Channel) -> bool {
     matches!(unit_of(channel), Unit::Time(..)) || says_time(own_name(channel))
 }
 
-/// Sample rates [Hz] that are numbers of their own, each with its struct; contradictory ones are noted and
-/// ignored.
-fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Vec<(String, f64)> {
-    let mut said: Vec<(String, f64, &str)> = Vec::new();
-    for channel in channels.iter().filter(|c| c.len == 1) {
-        let value = channel.read().ok().and_then(|all| all.first().copied()).unwrap_or(f64::NAN);
-        let Some(hz) = units::rate_hz(member(&channel.name), channel.unit.as_deref(), value) else {
-            continue;
-        };
-        let of = parent(&channel.name);
-        match said.iter_mut().find(|(other, ..)| *other == of) {
-            Some((_, other, name)) if (*other / hz - 1.0).abs() > SAME_RATE => {
-                notes.push(format!(
-                    "`{name}` says {other} Hz and `{}` says {hz} Hz: no rate is taken from them",
-                    channel.name
-                ));
-                *other = f64::NAN;
+/// Sample rates [Hz] that are numbers of their own, or columns of one number, each with its struct; those that
+/// contradict each other, or are none, are noted.
+fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Result<Vec<(String, f64)>> {
+    let mut said: Vec<(String, Vec<(String, f64)>)> = Vec::new();
+    let says =
+        |c: &&Channel| units::rate_hz(member(&c.name), c.unit.as_deref(), 1e-3).is_some() && !c.is_time;
+    for channel in channels.iter().filter(says) {
+        let mut values = channel.read()?;
+        if values.iter().all(|x| Some(x) == values.first()) {
+            values.truncate(1);
+        }
+        let (name, unit) = (member(&channel.name), channel.unit.as_deref());
+        if let Some(why) = units::odd_rate(name, unit, &values) {
+            notes.push(format!("`{}` {why}", channel.name));
+        } else if let Some(hz) = values.first().and_then(|x| units::rate_hz(name, unit, *x)) {
+            let of = parent(&channel.name).to_owned();
+            match said.iter_mut().find(|(other, _)| *other == of) {
+                Some((_, all)) => all.push((channel.name.clone(), hz)),
+                None => said.push((of, vec![(channel.name.clone(), hz)])),
             }
-            Some(_) => {}
-            None => said.push((of.to_owned(), hz, &channel.name)),
         }
     }
-    said.into_iter().filter(|(_, hz, _)| hz.is_finite()).map(|(of, hz, _)| (of, hz)).collect()
+    Ok(said.into_iter().filter_map(|(of, all)| Some((of, units::agreed(&all, notes)?))).collect())
 }
 
 /// Times of beginning [s] that are numbers of their own, each with the struct or the channel that it is of:
@@ -425,10 +421,7 @@ impl Course {
                 at(gap.after)
             ));
         }
-        let hz = rows / (span * second);
-        // A rate is a round number more often than the digits of times are exact.
-        let round = (hz * 10.0).round() / 10.0;
-        let hz = if (hz / round - 1.0).abs() < 1e-6 { round } else { hz };
+        let hz = units::rounded(rows / (span * second));
         // Stamps that stand for several samples say their places to a sample.
         let round = (hz / 100.0).round() * 100.0;
         let hz = if self.is_held() && (hz / round - 1.0).abs() < 1.0 / rows { round } else { hz };

@@ -1,52 +1,23 @@
 //! Units of time, and the names under which files of all formats keep times and rates: one list for all.
 
+use crate::csv;
+
 /// Units of time with their usual spelling and their seconds.
-const TIMES: [(&str, f64, &[&str]); 7] = [
-    (
-        "s",
-        1.0,
-        &["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden", "seconde", "secondes"],
-    ),
-    (
-        "ms",
-        1e-3,
-        &[
-            "ms",
-            "msec",
-            "msecs",
-            "msek",
-            "millisec",
-            "millisecond",
-            "milliseconds",
-            "millisekunden",
-            "millis",
-        ],
-    ),
+const TIMES: [(&str, f64, &str); 7] = [
+    ("s", 1.0, "s sec secs second seconds sek sekunde sekunden seconde secondes"),
+    ("ms", 1e-3, "ms msec msecs msek millisec millisecond milliseconds millisekunden millis"),
     // The second is the micro sign, the third the Greek letter, the fourth the remains of one in another
     // encoding.
     (
         "us",
         1e-6,
-        &[
-            "us",
-            "µs",
-            "μs",
-            "\u{fffd}s",
-            "usec",
-            "usecs",
-            "µsec",
-            "μsec",
-            "microsec",
-            "microsecond",
-            "microseconds",
-            "mikrosekunden",
-            "micros",
-        ],
+        "us µs μs \u{fffd}s usec usecs µsec μsec microsec microsecond microseconds mikrosekunden \
+      micros",
     ),
-    ("ns", 1e-9, &["ns", "nsec", "nsecs", "nanosec", "nanosecond", "nanoseconds", "nanosekunden", "nanos"]),
-    ("min", 60.0, &["min", "mins", "minute", "minutes", "minuten"]),
-    ("h", 3600.0, &["h", "hr", "hrs", "hour", "hours", "std", "stunde", "stunden"]),
-    ("d", 86_400.0, &["d", "day", "days", "tag", "tage"]),
+    ("ns", 1e-9, "ns nsec nsecs nanosec nanosecond nanoseconds nanosekunden nanos"),
+    ("min", 60.0, "min mins minute minutes minuten"),
+    ("h", 3600.0, "h hr hrs hour hours std stunde stunden"),
+    ("d", 86_400.0, "d day days tag tage"),
 ];
 
 /// Other units that recorders write, without brackets and in small letters.
@@ -58,78 +29,19 @@ const OTHERS: [&str; 62] = [
 ];
 
 /// Names of sample rates, of letters and digits alone; a unit of frequency may follow.
-const RATES: [&str; 26] = [
-    "fs",
-    "sr",
-    "rate",
-    "sfreq",
-    "fsample",
-    "samplerate",
-    "samplingrate",
-    "samplesrate",
-    "samplefrequency",
-    "samplingfrequency",
-    "samplefreq",
-    "samplingfreq",
-    "sampfreq",
-    "samprate",
-    "samplespersecond",
-    "samplespersec",
-    "abtastrate",
-    "abtastfrequenz",
-    "acquisitionrate",
-    "acquisitionfrequency",
-    "scanrate",
-    "datarate",
-    "sps",
-    "fsamp",
-    "fabtast",
-    "framerate",
-];
+const RATES: &str = "fs sr rate sfreq fsample samplerate samplingrate samplesrate samplefrequency \
+    samplingfrequency samplefreq samplingfreq sampfreq samprate samplespersecond samplespersec \
+    abtastrate abtastfrequenz acquisitionrate acquisitionfrequency scanrate datarate sps fsamp \
+    fabtast framerate";
 
 /// Names of the time between two samples; a unit of time may follow.
-const STEPS: [&str; 18] = [
-    "dt",
-    "ts",
-    "deltat",
-    "deltax",
-    "deltatime",
-    "tstep",
-    "timestep",
-    "sampleinterval",
-    "samplinginterval",
-    "sampleperiod",
-    "samplingperiod",
-    "sampletime",
-    "samplingtime",
-    "wfincrement",
-    "timeincrement",
-    "xincrement",
-    "abtastintervall",
-    "tsample",
-];
+const STEPS: &str = "dt ts deltat deltax deltatime tstep timestep sampleinterval samplinginterval sampleperiod \
+    samplingperiod sampletime samplingtime wfincrement timeincrement xincrement abtastintervall \
+    tsample";
 
 /// Names of the time at which a channel begins; a unit of time may follow.
-const STARTS: [&str; 18] = [
-    "t0",
-    "tstart",
-    "start",
-    "starttime",
-    "startoffset",
-    "timestart",
-    "timeoffset",
-    "timezero",
-    "wfstarttime",
-    "wfstartoffset",
-    "xstart",
-    "x0",
-    "begin",
-    "begintime",
-    "timebegin",
-    "starttimestamp",
-    "starttimeutc",
-    "recordingstart",
-];
+const STARTS: &str = "t0 tstart start starttime startoffset timestart timeoffset timezero wfstarttime \
+    wfstartoffset xstart x0 begin begintime timebegin starttimestamp starttimeutc recordingstart";
 
 /// Names that are times of beginning only with a unit of time behind them.
 const OFFSETS: [&str; 3] = ["offset", "delay", "lag"];
@@ -147,10 +59,9 @@ pub(crate) enum Unit {
     Unsaid,
 }
 
-/// A rate is a round number more often than the digits of an increment are exact.
-pub(crate) fn rounded_rate(hz: f64) -> f64 {
-    let round = (hz * 10.0).round() / 10.0;
-    if (hz / round - 1.0).abs() < 1e-9 { round } else { hz }
+/// Whether a word is one of a list.
+fn is_among(list: &str, word: &str) -> bool {
+    list.split(' ').any(|of| of == word)
 }
 
 /// A unit without brackets, in small letters.
@@ -163,7 +74,7 @@ pub(crate) fn seconds(unit: &str) -> Option<(&'static str, f64)> {
     let unit = bare(unit);
     // netCDF counts from a date: `seconds since 2024-05-01`.
     let unit = unit.split_once(" since ").map_or(unit.as_str(), |(unit, _)| unit.trim_end());
-    let of = TIMES.iter().find(|(_, _, names)| names.contains(&unit));
+    let of = TIMES.iter().find(|(_, _, names)| is_among(names, unit));
     of.map(|(name, seconds, _)| (*name, *seconds))
 }
 
@@ -240,26 +151,26 @@ pub(crate) fn hertz(word: &str) -> Option<f64> {
 pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64> {
     let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     let beside = unit.map(bare).unwrap_or_default();
-    let plain = |key: &str| RATES.contains(&key) && key != "rate";
+    let plain = |key: &str| is_among(RATES, key) && key != "rate";
     let rate = if plain(&key) {
         // In an unknown unit it is ignored.
         Some(value * if beside.is_empty() { 1.0 } else { hertz(&beside)? })
     } else {
         let of_name = FREQUENCIES.iter().find_map(|(unit, hz)| Some((key.strip_suffix(unit)?, *hz)));
-        of_name.filter(|(key, _)| RATES.contains(key)).map(|(_, hz)| value * hz)
+        of_name.filter(|(key, _)| is_among(RATES, key)).map(|(_, hz)| value * hertz(&beside).unwrap_or(hz))
     };
     // A sampling time in seconds may be that of the whole record.
     let is_step = |key: &str, second: f64| second < 1.0 || !matches!(key, "sampletime" | "samplingtime");
     let step = || {
-        if STEPS.contains(&key.as_str()) {
+        if is_among(STEPS, &key) {
             let second = if beside.is_empty() { 1.0 } else { seconds(&beside)?.1 };
             // A step in another unit than seconds is not used.
             return (!beside.is_empty() && is_step(&key, second) || value * second <= SLOWEST_S)
                 .then_some(value * second);
         }
-        let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
+        let ends = TIMES.iter().flat_map(|(_, s, names)| names.split(' ').map(move |name| (name, *s)));
         ends.filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
-            .find(|(key, _)| STEPS.contains(key))
+            .find(|(key, _)| is_among(STEPS, key))
             .filter(|(key, s)| is_step(key, *s) || value * s <= SLOWEST_S)
             .map(|(_, s)| value * s)
     };
@@ -271,46 +182,62 @@ pub(crate) fn odd_rate(name: &str, unit: Option<&str>, values: &[f64]) -> Option
     // Some step, and some rate, is one under such a name.
     let of_thousandth = rate_hz(name, unit, 1e-3)?;
     match values {
-        [] => Some("is empty: no rate follows".to_owned()),
+        [] => Some(format!("is empty{NO_RATE}")),
         [value] if rate_hz(name, unit, *value).is_some() => None,
         [value] if of_thousandth < 1.0 || !(value.is_finite() && *value > 0.0) => {
-            Some(format!("is {value}: no rate follows"))
+            Some(format!("is {value}{NO_RATE}"))
         }
         [value] => Some(format!(
-            "is {value}: as seconds that is {} Hz, as milliseconds {} Hz, as microseconds {} Hz; no rate follows",
+            "is {value}: as seconds that is {} Hz, as milliseconds {} Hz, as microseconds {} Hz{NO_RATE}",
             rounded(1.0 / value),
             rounded(1e3 / value),
             rounded(1e6 / value)
         )),
         [first, ..] => {
             let all = values.iter().fold((*first, *first), |(low, high), x| (low.min(*x), high.max(*x)));
-            Some(format!("has {} values, from {} to {}: no rate follows", values.len(), all.0, all.1))
+            Some(format!("has {} values, from {} to {}{NO_RATE}", values.len(), all.0, all.1))
         }
     }
 }
+
+/// By which notes on numbers that say no rate end; where a rate is known otherwise they are of no interest.
+pub(crate) const NO_RATE: &str = ": no rate follows";
+
+/// The sample rate [Hz] that a text under the name of a rate or of a time step says, such as `48 kHz`, or why none
+/// follows; nothing under another name.
+pub(crate) fn rate_in_words(name: &str, text: &str) -> Option<Result<f64, String>> {
+    rate_hz(name, None, 1e-3)?;
+    csv::rate_hz(name, text).map(Ok).or_else(|| why_odd(name, text).map(Err))
+}
+
+/// Why no rate follows from such a text under such a name.
+pub(crate) fn why_odd(name: &str, text: &str) -> Option<String> {
+    rate_hz(name, None, 1e-3)?;
+    let (name, short) = (name.trim(), text.trim().chars().take(40).collect::<String>());
+    let value = short.parse().ok().and_then(|value| odd_rate(name, None, &[value]));
+    Some(value.map_or(format!("`{name}` is `{short}`{NO_RATE}"), |why| format!("`{name}` {why}")))
+}
+
+/// The rate on which all numbers agree [Hz]; with a note on two that contradict each other, and no rate.
+pub(crate) fn agreed(said: &[(String, f64)], notes: &mut Vec<String>) -> Option<f64> {
+    let (name, first) = said.first()?;
+    let Some((other, hz)) = said.iter().find(|(_, hz)| (hz / first - 1.0).abs() > SAME_RATE) else {
+        return Some(*first);
+    };
+    notes.push(format!("`{name}` says {first} Hz and `{other}` says {hz} Hz: no rate is taken from them"));
+    None
+}
+
+/// Rates that differ by less than this part are one: clocks drift.
+pub(crate) const SAME_RATE: f64 = 1e-3;
 
 /// Whether a name is that of a time.
 pub fn says_time(name: &str) -> bool {
     let word: String =
         name.rsplit('.').next().unwrap_or(name).chars().take_while(|c| c.is_alphabetic()).collect();
     let word = word.to_lowercase();
-    const WORDS: [&str; 14] = [
-        "t",
-        "ts",
-        "epoch",
-        "unix",
-        "utc",
-        "stamp",
-        "clock",
-        "uhrzeit",
-        "zeit",
-        "temps",
-        "tiempo",
-        "tempo",
-        "datum",
-        "zeitstempel",
-    ];
-    word.starts_with("time") || matches!(word.as_str(), "date" | "datetime") || WORDS.contains(&word.as_str())
+    const WORDS: &str = "t ts epoch unix utc stamp clock uhrzeit zeit temps tiempo tempo datum zeitstempel";
+    word.starts_with("time") || matches!(word.as_str(), "date" | "datetime") || is_among(WORDS, &word)
 }
 
 /// Seconds from 1970 to 1990, and to 2060.
@@ -324,13 +251,13 @@ pub(crate) fn epoch_unit_s(value: f64) -> Option<f64> {
 /// A number [s] under a name, where that is the one of the time at which a channel begins.
 pub(crate) fn start_s(name: &str, value: f64) -> Option<f64> {
     let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-    let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
-    if STARTS.contains(&key.as_str()) {
+    let ends = TIMES.iter().flat_map(|(_, s, names)| names.split(' ').map(move |name| (name, *s)));
+    if is_among(STARTS, &key) {
         return Some(value * epoch_unit_s(value).unwrap_or(1.0));
     }
     let (_, second) = ends
         .filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
-        .find(|(key, _)| STARTS.contains(key) || OFFSETS.contains(key))?;
+        .find(|(key, _)| is_among(STARTS, key) || OFFSETS.contains(key))?;
     Some(value * second)
 }
 
@@ -371,6 +298,11 @@ mod tests {
         {
             assert_eq!(rate_hz(name, unit, value), None, "{name}");
         }
+        for text in ["12800", "12.8 kHz", "12.8k", " 12800 Hz"] {
+            assert_eq!(rate_in_words("sampling rate", text), Some(Ok(12_800.0)), "{text}");
+        }
+        assert_eq!(rate_in_words("fs", "nan"), Some(Err("`fs` is NaN: no rate follows".to_owned())));
+        assert_eq!(rate_in_words("load", "12800"), None);
     }
 
     #[test]

@@ -71,6 +71,21 @@ fn issue_times_are_recognised_by_how_they_rise_and_in_any_unit() {
 }
 
 #[test]
+fn issue_a_rate_that_contradicts_the_times_is_none() {
+    let desk = Scratch::create("formats-contradiction");
+    let times = |n: usize| format!("{:.6}", n as f64 / RATE_HZ);
+    for (head, agrees) in [("# fs = 12800 Hz\n", true), ("# fs = 25.6k\n", false), ("# fs = 6400\n", false)] {
+        let found = opened(&desk, &table(&format!("{head}time_s,acc\n"), ",", 20_000, times));
+        assert_eq!(found.channels[1].rate_hz, agrees.then_some(RATE_HZ), "{head}");
+        assert_eq!(
+            found.notes.iter().any(|note| note.contains("give the one that holds")),
+            !agrees,
+            "{head}"
+        );
+    }
+}
+
+#[test]
 fn issue_a_count_is_no_signal_and_says_no_rate() {
     let desk = Scratch::create("formats-counts");
     let recording = opened(&desk, &table(",acc\n", ",", 3000, |n| n.to_string()));

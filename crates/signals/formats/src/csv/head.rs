@@ -65,46 +65,67 @@ fn is_row_of_units(row: &[String]) -> bool {
     !some.is_empty() && (2 * known > some.len() || known > 0 && time)
 }
 
-/// The sample rate [Hz] that a line above the table says: `fs = 12800`, `Sample rate: 12.8 kHz`, `Delta_X`
-/// and the step behind a separator. Lines that contradict each other say nothing. `commas` says that the
-/// table has decimal commas.
-pub(crate) fn rate_hz(head: &[String], dialect: Dialect, commas: bool) -> Option<f64> {
-    let mut said = head.iter().filter_map(|line| {
-        let line = line.trim_start_matches(|c: char| c.is_whitespace() || "#%\"".contains(c));
-        let (key, rest) = line.split_once([':', '=', '\t', ';', ','])?;
-        let rest = rest.trim_matches(|c: char| c.is_whitespace() || "\";,:=".contains(c));
-        let end = rest.find(|c: char| !(c.is_ascii_digit() || ".,+-eE".contains(c)));
-        let (number, behind) = rest.split_at(end.unwrap_or(rest.len()));
-        let number = number.trim_end_matches([',', '.']);
-        // The head may have another decimal sign than the table.
-        let plain = |text: &str| text.parse().ok();
-        let unit =
-            behind.split_whitespace().next().filter(|word| is_unit(word) || units::hertz(word).is_some());
-        // `12,800 Hz` are thousands. Where the table has decimal commas it may be either, as may `12.800`.
-        let groups = |sign: char| {
-            let (whole, rest) = number.split_once(sign)?;
-            let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
-            let fits = (1..=3).contains(&whole.len()) && !whole.starts_with('0') && rest.len() == 3;
-            (fits && digits(whole) && digits(rest)).then(|| format!("{whole}{rest}"))
-        };
-        // Behind a comma several fields may follow.
-        let of_key =
-            || key.rsplit([' ', '[', '(', '_']).next().filter(|_| !line[key.len()..].starts_with(','));
-        let in_hz = unit.or_else(of_key).and_then(units::hertz) == Some(1.0);
-        if in_hz && commas && (groups(',').is_some() || groups('.').is_some()) {
-            return None;
+/// The sample rate [Hz] that lines above the table say, with notes on those that should and do not, and on those that
+/// contradict each other.
+pub(crate) fn rate_hz(
+    head: &[String],
+    dialect: Dialect,
+    commas: bool,
+    notes: &mut Vec<String>,
+) -> Option<f64> {
+    let mut said = Vec::new();
+    for line in head {
+        let Some((whole, key, rest)) = key_of(line) else { continue };
+        match rate_of(line, dialect, commas) {
+            Some(hz) => said.push((whole.trim_end().to_owned(), hz)),
+            None if whole[key.len()..].starts_with(',') => {}
+            None => notes.extend(units::why_odd(key, rest.trim_start_matches([':', '=']))),
         }
-        let thousands = groups(',').filter(|_| in_hz);
-        let number = thousands.as_deref().unwrap_or(number);
-        let value = plain(number).or_else(|| dialect.number(number));
-        let value = value.or_else(|| plain(&number.replacen(',', ".", 1)));
-        // Fields of the table may stand behind it.
-        let field = || number.split_once(dialect.separator).filter(|_| dialect.separator == ',');
-        let value = value.or_else(|| plain(field()?.0))?;
-        // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
-        let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);
-        alone.then(|| units::rate_hz(key, unit, value)).flatten()
-    });
-    let first = said.next()?;
-    said.all(|hz| (hz / first - 1.0).abs() < 1e-3).then_some(first)
+    }
+    units::agreed(&said, notes)
+}
+
+/// A line without the marks of a comment, and its parts before and behind the first separator.
+fn key_of(line: &str) -> Option<(&str, &str, &str)> {
+    let line = line.trim_start_matches(|c: char| c.is_whitespace() || "#%\"".contains(c));
+    let (key, rest) = line.split_once([':', '=', '\t', ';', ','])?;
+    Some((line, key, rest))
+}
+
+/// The sample rate [Hz] that a line says: `fs = 12800`, `Sample rate: 12.8 kHz`, `Delta_X` and the step behind a
+/// separator. `commas` says that the table has decimal commas.
+pub(crate) fn rate_of(line: &str, dialect: Dialect, commas: bool) -> Option<f64> {
+    let (line, key, rest) = key_of(line)?;
+    let rest = rest.trim_matches(|c: char| c.is_whitespace() || "\";,:=".contains(c));
+    let end = rest.find(|c: char| !(c.is_ascii_digit() || ".,+-eE".contains(c)));
+    let (number, behind) = rest.split_at(end.unwrap_or(rest.len()));
+    let number = number.trim_end_matches([',', '.']);
+    // The head may have another decimal sign than the table.
+    let plain = |text: &str| text.parse().ok();
+    let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || units::hertz(word).is_some());
+    // `12,800 Hz` are thousands. Where the table has decimal commas it may be either, as may `12.800`.
+    let groups = |sign: char| {
+        let (whole, rest) = number.split_once(sign)?;
+        let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+        let fits = (1..=3).contains(&whole.len()) && !whole.starts_with('0') && rest.len() == 3;
+        (fits && digits(whole) && digits(rest)).then(|| format!("{whole}{rest}"))
+    };
+    // Behind a comma several fields may follow.
+    let of_key = || key.rsplit([' ', '[', '(', '_']).next().filter(|_| !line[key.len()..].starts_with(','));
+    let in_hz = unit.or_else(of_key).and_then(units::hertz) == Some(1.0);
+    if in_hz && commas && (groups(',').is_some() || groups('.').is_some()) {
+        return None;
+    }
+    let thousands = groups(',').filter(|_| in_hz);
+    let number = thousands.as_deref().unwrap_or(number);
+    let value = plain(number).or_else(|| dialect.number(number));
+    let value = value.or_else(|| plain(&number.replacen(',', ".", 1)));
+    // Fields of the table may stand behind it.
+    let field = || number.split_once(dialect.separator).filter(|_| dialect.separator == ',');
+    let value = value.or_else(|| plain(field()?.0))?;
+    // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
+    let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);
+    // `25.6k` are thousands, no kelvins.
+    let (value, unit) = if unit == Some("k") { (1e3 * value, None) } else { (value, unit) };
+    alone.then(|| units::rate_hz(key, unit, value)).flatten()
 }
