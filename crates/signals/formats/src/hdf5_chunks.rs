@@ -53,7 +53,9 @@ struct Chunk {
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
     set: Arc<Set>,
+    /// Those that were written, and how many there should be.
     chunks: Arc<Vec<Chunk>>,
+    whole: u64,
     /// Samples in a chunk, and where they are: the first one and the distance of two [numbers].
     samples: u64,
     first: usize,
@@ -61,7 +63,8 @@ pub(crate) struct Column {
 }
 
 /// Channels along the extent `along`, one for each place on the extent `across`; `None` for chunks that are
-/// packed in other ways, are larger than what is held, or of which some were never written.
+/// packed in other ways, are larger than what is held, or of which none was written at some place across. Samples of
+/// chunks that were never written are missing.
 pub(crate) fn columns(
     path: &Path,
     format: &'static str,
@@ -103,15 +106,12 @@ pub(crate) fn columns(
         });
     }
     let whole = |axis: usize| shape[axis].div_ceil(chunk[axis]);
-    let complete = |chunks: &Vec<Chunk>| {
-        chunks.len() as u64 == whole(along) && chunks.iter().zip(0..).all(|(c, n)| c.place == n)
-    };
     rows.values_mut().for_each(|chunks| chunks.sort_by_key(|c| c.place));
     // Whichever is taken, the other one's place stays empty.
     if rows.values().any(|chunks| chunks.windows(2).any(|pair| pair[0].place == pair[1].place)) {
         return Err(hdf5_pure::Error::Shape("two of its chunks have the same place".to_owned()));
     }
-    if rows.len() as u64 != across.map_or(1, whole) || !rows.values().all(complete) {
+    if rows.len() as u64 != across.map_or(1, whole) {
         return Ok(None);
     }
     let rows: Vec<Arc<Vec<Chunk>>> = rows.into_values().map(Arc::new).collect();
@@ -121,6 +121,7 @@ pub(crate) fn columns(
         Column {
             set: set.clone(),
             chunks: rows[row as usize].clone(),
+            whole: whole(along),
             samples: chunk[along],
             first: within,
             stride: stride(along),
@@ -129,17 +130,31 @@ pub(crate) fn columns(
     Ok(Some((0..across.map_or(1, |a| shape[a])).map(column).collect()))
 }
 
+impl Column {
+    /// How many samples from the beginning on no chunk holds, and where the first of these are.
+    pub(crate) fn missing(&self, len: u64) -> Option<(u64, u64)> {
+        let holds = |place: &u64| self.chunks.binary_search_by_key(place, |chunk| chunk.place).is_ok();
+        let of = |place: u64| self.samples.min(len.saturating_sub(place * self.samples));
+        let first = (0..self.whole).find(|place| !holds(place))?;
+        Some(((first..self.whole).filter(|place| !holds(place)).map(of).sum(), first * self.samples))
+    }
+}
+
 impl Samples for Column {
     fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let set = &*self.set;
         let mut file = File::open(&set.path).map_err(|e| Error::read(&set.path, e))?;
         let mut block = Vec::new();
-        for chunk in self.chunks.iter() {
-            let bytes = set.unpacked(&mut file, chunk)?;
+        let mut written = self.chunks.iter().peekable();
+        for place in 0..self.whole {
+            let chunk = written.next_if(|chunk| chunk.place == place);
+            let bytes = chunk.map_or_else(|| Ok(Vec::new()), |chunk| set.unpacked(&mut file, chunk))?;
             let width = set.number.kind.bytes();
-            let count = self.samples.min(len.saturating_sub(chunk.place * self.samples));
-            let numbers = bytes[self.first * width..].chunks_exact(width).step_by(self.stride);
-            let mut numbers = numbers.take(count as usize).map(|at| set.number.decode(at));
+            let count = self.samples.min(len.saturating_sub(place * self.samples)) as usize;
+            let numbers =
+                bytes.get(self.first * width..).unwrap_or(&[]).chunks_exact(width).step_by(self.stride);
+            let missing = std::iter::repeat_n(f64::NAN, if chunk.is_none() { count } else { 0 });
+            let mut numbers = numbers.take(count).map(|at| set.number.decode(at)).chain(missing);
             // A set may be one chunk.
             loop {
                 block.clear();

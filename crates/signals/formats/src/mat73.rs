@@ -258,7 +258,7 @@ impl Found {
         }
         let axes = Some(axes);
         let streamed = match (&axes, plain(&dataset.datatype()?)) {
-            (Some(axes), Some(number)) => self.streamed(dataset, number, &shape, axes)?,
+            (Some(axes), Some(number)) => self.streamed((dataset, name), number, &shape, axes)?,
             _ => None,
         };
         let channels = match streamed {
@@ -314,8 +314,8 @@ impl Found {
 
     /// Channels whose samples stay in the file.
     fn streamed(
-        &self,
-        dataset: &Dataset,
+        &mut self,
+        (dataset, name): (&Dataset, &str),
         number: Number,
         shape: &[u64],
         axes: &Axes,
@@ -344,6 +344,12 @@ impl Found {
             Layout::Chunked { .. } if !shape.is_empty() => {
                 let columns =
                     hdf5_chunks::columns(&self.path, FORMAT, dataset, number, axes.along, axes.across)?;
+                if let Some((missing, first)) = columns.iter().flatten().find_map(|of| of.missing(len)) {
+                    self.notes.push(format!(
+                        "`{name}`: {missing} of {len} samples were never written, from sample {first} on; they are \
+                         taken for missing, as the fill value that stands for them is none of the sensor's"
+                    ));
+                }
                 Ok(columns.map(|all| all.into_iter().map(|of| Channel::new("", len, of)).collect()))
             }
             _ => Ok(None),
