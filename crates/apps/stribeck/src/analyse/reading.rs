@@ -334,7 +334,7 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
     // Times that are damaged do not rise.
     let alone = recording.channels.iter().filter(|c| c.len > 1).count() < 2;
     let is_time = |c: &Channel| c.is_time || says_time(&c.name) && !alone;
-    let signals: Vec<&Channel> = recording.channels.iter().filter(|c| !is_time(c)).collect();
+    let signals: Vec<&Channel> = recording.channels.iter().filter(|c| c.len != 1 && !is_time(c)).collect();
     // Of a run the one that its report judges.
     let found =
         signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
@@ -347,7 +347,9 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
         all => all.iter().find(|c| moves(c)).or_else(|| all.first()),
     };
     let Some(channel) = found.or(first) else {
-        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
+        let times = recording.channels.iter().filter(|c| is_time(c) && c.len > 1);
+        let even = times.map(|c| format!("; `{}` rises evenly, as times or a count do", c.name));
+        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).chain(even).collect();
         bail!(
             "`{}` holds no signal; its channels are {}{notes}",
             recording.path.display(),
@@ -377,18 +379,31 @@ pub(super) fn moves(channel: &Channel) -> bool {
 /// Speeds that vary by more than this part smear the fifth harmonic of a family over several lines.
 const STEADY: f64 = 0.01;
 
-/// The speeds that the file says [1/min], each with its name there: that of `rpm`, or all that differ.
-fn speed_in_file(recording: &Recording) -> Result<Vec<(f64, String)>> {
+/// The speeds that the file says [1/min], each with its name there: that of `rpm`, or all that differ. One that does not
+/// say its unit is noted.
+fn speed_in_file(recording: &Recording, notes: &mut Vec<String>) -> Result<Vec<(f64, String)>> {
     let mut said: Vec<(f64, String)> = Vec::new();
-    for channel in recording.channels.iter().filter(|c| c.len == 1 && c.name.to_lowercase().contains("rpm")) {
-        let rpm = channel.read()?.first().copied().unwrap_or(f64::NAN);
+    for channel in recording.channels.iter().filter(|c| c.len == 1) {
+        let (name, value) =
+            (channel.name.to_lowercase(), channel.read()?.first().copied().unwrap_or(f64::NAN));
+        let of_name = name.contains("rpm").then_some((1.0, false));
+        let Some((factor, _)) = tacho::turns_a_minute(channel).or(of_name) else {
+            if ["speed", "drehzahl", "omega"].contains(&name.rsplit('.').next().unwrap_or(&name)) {
+                notes.push(format!(
+                    "`{}` is {value} and does not say its unit: no speed follows",
+                    channel.name
+                ));
+            }
+            continue;
+        };
+        let rpm = factor * value;
         if !(rpm.is_finite() && rpm > 0.0) {
             continue;
         }
-        if channel.name.eq_ignore_ascii_case("rpm") {
+        if name == "rpm" {
             return Ok(vec![(rpm, channel.name.clone())]);
         }
-        if said.iter().all(|(other, _)| *other != rpm) {
+        if said.iter().all(|(other, _)| (other / rpm - 1.0).abs() > STEADY) {
             said.push((rpm, channel.name.clone()));
         }
     }
@@ -409,7 +424,7 @@ fn machine(
         (None, Some(scene)) => Some(catalogue::of_scene(scene)),
         (None, None) => None,
     };
-    let said = speed_in_file(recording)?;
+    let said = speed_in_file(recording, notes)?;
     let mut pulses = None;
     let samples = channel.len;
     let speed_rpm = if let Some(Speed::Of(rpm)) = options.speed_rpm {

@@ -15,7 +15,7 @@ use self::edges::{Levels, edges, steps};
 use self::mended::{Mended, mended};
 use crate::Error;
 
-pub use self::course::of_angle;
+pub use self::course::{of_angle, turns_a_minute};
 
 /// Speed from a tachometer.
 #[derive(Debug, Clone, PartialEq)]

@@ -62,7 +62,7 @@ fn of_angles(angle: &[f64], name: &str, rate_hz: f64) -> Result<Turns, Error> {
 }
 
 /// Units of speed, in small letters without blanks, and their turns a minute.
-const UNITS: [(&[&str], f64); 4] = [
+const UNITS: [(&[&str], f64); 6] = [
     (
         &[
             "rpm", "1/min", "/min", "min-1", "min^-1", "min⁻¹", "min**-1", "u/min", "r/min", "rev/min",
@@ -73,7 +73,12 @@ const UNITS: [(&[&str], f64); 4] = [
     (&["rev/s", "r/s", "rps"], 60.0),
     (&["rad/s", "rad*s-1", "rad·s⁻¹", "rad/sec"], 60.0 / TAU),
     (&["deg/s", "°/s"], 1.0 / 6.0),
+    (&["krpm"], 1e3),
+    (&["hz", "1/s"], 60.0),
 ];
+
+/// Parts of names of speeds: in hertz other numbers are, too.
+const SPEEDS: [&str; 7] = ["speed", "rpm", "omega", "drehzahl", "rotat", "shaft_hz", "shaft_freq"];
 
 /// Most volts that pulses of a wheel have.
 const PULSES_V: f64 = 30.0;
@@ -147,19 +152,24 @@ pub(super) fn of_speed(channel: &Channel, rate_hz: f64) -> Result<Option<Turns>,
 const STANDS: f64 = 1e-3;
 
 /// How many turns a minute one unit of the channel is, and whether its unit says so; none where it is no
-/// speed. A name alone counts with its last word: `Speed (rpm)`, `n_rpm`, `rpm`.
-fn turns_a_minute(channel: &Channel) -> Option<(f64, bool)> {
+/// speed. A name alone counts with its end: `Speed (rpm)`, `omega_rad_s`, `rpm`.
+pub fn turns_a_minute(channel: &Channel) -> Option<(f64, bool)> {
     let plain = |text: &str| text.to_lowercase().replace([' ', '[', ']', '(', ')'], "");
-    let of = |unit: &str| UNITS.iter().find(|(all, _)| all.contains(&unit)).map(|(_, factor)| *factor);
-    if let Some(unit) = channel.unit.as_deref().filter(|unit| !unit.trim().is_empty()) {
-        return of(&plain(unit)).map(|factor| (factor, true));
+    let name = channel.name.trim().to_lowercase();
+    let is_speed = SPEEDS.iter().any(|part| name.contains(part)) && !name.contains("sampl");
+    let all = UNITS.iter().flat_map(|(all, factor)| all.iter().map(move |unit| (*unit, *factor)));
+    let mut all = all.filter(|(unit, _)| is_speed || !matches!(*unit, "hz" | "1/s"));
+    if let Some(unit) = channel.unit.as_deref().map(plain).filter(|unit| !unit.is_empty()) {
+        return all.find(|(of, _)| *of == unit).map(|(_, factor)| (factor, true));
     }
-    let name = channel.name.trim();
     if let Some((_, unit)) = name.trim_end_matches([')', ']']).rsplit_once(['(', '['])
-        && let Some(factor) = of(&plain(unit))
+        && let Some((_, factor)) = all.clone().find(|(of, _)| *of == plain(unit))
     {
         return Some((factor, true));
     }
-    let word = name.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or(name);
-    (word.eq_ignore_ascii_case("rpm")).then_some((1.0, false))
+    let ends = |unit: &str| {
+        let before = name.strip_suffix(unit).or_else(|| name.strip_suffix(&unit.replace('/', "_")));
+        before.is_some_and(|before| !before.ends_with(char::is_alphanumeric))
+    };
+    all.find(|(unit, _)| !unit.starts_with('/') && ends(unit)).map(|(_, factor)| (factor, false))
 }
