@@ -192,6 +192,7 @@ fn of_run(info: &RunInfo, stage: Option<Stage>, held: bool) -> String {
             "planned, killed before its first step".to_owned()
         }
         Status::Running if held => format!("running, {ms} ms so far"),
+        Status::Running if ms == 0.0 => "killed before the first sample".to_owned(),
         Status::Running => format!("killed after {ms} ms"),
     }
 }
