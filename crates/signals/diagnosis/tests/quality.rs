@@ -8,6 +8,7 @@ use stribeck_diagnosis::record::quality::{self, Kind, Quality};
 use stribeck_diagnosis::{Analysis, Machine};
 use stribeck_dsp::channel::Channel;
 use stribeck_testing::Noise;
+use stribeck_testing::damage::cases;
 use stribeck_theory::catalogue::CatalogueBearing;
 
 const RATE_HZ: f64 = 12_800.0;
@@ -333,13 +334,8 @@ fn issue_a_sign_that_was_lost_is_no_verdict() {
     }
 }
 
-/// As many as `PROPTEST_CASES` says.
-fn cases() -> u32 {
-    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(1000)
-}
-
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(cases(1000))]
 
     /// Valid records that were wrapped, held, swapped, stuffed, doubled …: no claim, never "no defect".
     #[test]

@@ -262,6 +262,9 @@ fn issue_a_speed_over_time_is_no_tachometer_of_pulses() {
         (held("n", std::f64::consts::TAU / 60.0).in_unit(Some("rad/s".into())), true),
         (held("Speed (rpm)", 1.0), true),
         (held("shaft_rpm", -1.0), true),
+        (held("rpm_hz", 1.0 / 60.0), true),
+        (held("omega_rad_s", std::f64::consts::TAU / 60.0), true),
+        (held("sampling_speed_hz", 1.0 / 60.0), false),
         (held("tacho", 1.0), false),
         (held("rpm", 1.0).in_unit(Some("V".into())), false),
     ] {

@@ -115,11 +115,9 @@ pub fn open(path: &Path) -> Result<Recording> {
     let Found { mut channels, texts, mut notes, .. } = found;
     axis_structs::told(&mut channels, &texts)?;
     for (name, text) in &texts {
-        match units::rate_in_words(name.rsplit('.').next().unwrap_or(name), text) {
-            Some(Ok(hz)) => channels.push(Channel::held(name.clone(), vec![hz])),
-            Some(Err(why)) => notes.push(why),
-            None => {}
-        }
+        let mut rates = units::Rates::default();
+        rates.words(name.rsplit('.').next().unwrap_or(name), text);
+        channels.extend(rates.agreed(&mut notes).map(|hz| Channel::held(name.clone(), vec![hz])));
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }

@@ -437,23 +437,15 @@ fn start_s(attributes: &HashMap<String, AttrValue>) -> Option<f64> {
 fn rates(attributes: &HashMap<String, AttrValue>, notes: &mut Vec<String>) -> Option<f64> {
     let mut names: Vec<&String> = attributes.keys().collect();
     names.sort();
-    let mut found = Vec::new();
+    let mut rates = units::Rates::default();
     for name in names {
-        let value = &attributes[name];
-        let said = match numbers(value) {
-            Some(all) => match units::odd_rate(name, None, &all) {
-                Some(why) => Some(Err(format!("`{name}` {why}"))),
-                None => all.first().and_then(|x| units::rate_hz(name, None, *x)).map(Ok),
-            },
-            None => value.as_str().and_then(|text| units::rate_in_words(name, text)),
-        };
-        match said {
-            Some(Ok(hz)) => found.push((name.clone(), hz)),
-            Some(Err(why)) => notes.push(why),
-            None => {}
+        match (numbers(&attributes[name]), attributes[name].as_str()) {
+            (Some(all), _) => rates.numbers(name, name, None, &all),
+            (None, Some(text)) => rates.words(name, text),
+            (None, None) => {}
         }
     }
-    units::agreed(&found, notes)
+    rates.agreed(notes)
 }
 
 /// Why chunks cannot be unpacked, where a filter is unknown.

@@ -220,15 +220,11 @@ pub fn open(path: &Path) -> Result<Recording> {
     let columns = reader.metadata().file_metadata().schema_descr().columns().to_vec();
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let given = reader.metadata().file_metadata().key_value_metadata();
-    let mut said = Vec::new();
+    let mut rates = units::Rates::default();
     for note in given.into_iter().flatten() {
-        match note.value.as_ref().and_then(|text| units::rate_in_words(&note.key, text)) {
-            Some(Ok(hz)) => said.push((note.key.clone(), hz)),
-            Some(Err(why)) => notes.push(why),
-            None => {}
-        }
+        rates.words(&note.key, note.value.as_deref().unwrap_or_default());
     }
-    let rate_hz = units::agreed(&said, &mut notes);
+    let rate_hz = rates.agreed(&mut notes);
     let pandas = given
         .and_then(|all| all.iter().find(|note| note.key == "pandas"))
         .and_then(|note| note.value.as_deref());

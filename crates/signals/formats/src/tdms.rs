@@ -50,8 +50,7 @@ struct Object {
     start_time_s: Option<f64>,
     start_offset_s: Option<f64>,
     /// Sample rates by properties such as `SamplingRate` [Hz], and why others that should say one do not.
-    rates: Vec<(String, f64)>,
-    odd_rates: Vec<String>,
+    rates: units::Rates,
     unit: Option<String>,
     /// Properties of its scales, by name.
     scales: BTreeMap<String, Property>,
@@ -61,24 +60,6 @@ struct Object {
     /// Its place in the rows of DAQmx, or why it has none.
     scaler: Option<daqmx::Scaler>,
     foreign: Option<String>,
-}
-
-impl Object {
-    /// All rates that its properties say [Hz], and why others say none: an increment that is no second long is one.
-    fn rates(&self) -> (Vec<(String, f64)>, Vec<String>) {
-        let (mut rates, mut odd) = (self.rates.clone(), self.odd_rates.clone());
-        let second = self.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
-        match self.increment.map(|step| (step, units::rounded(1.0 / (step * second)))) {
-            Some((_, hz)) if hz >= 1.0 && hz.is_finite() => rates.insert(0, (INCREMENT.to_owned(), hz)),
-            Some((step, _)) => {
-                odd.extend(
-                    units::odd_rate(INCREMENT, None, &[step]).map(|why| format!("`{INCREMENT}` {why}")),
-                );
-            }
-            None => {}
-        }
-        (rates, odd)
-    }
 }
 
 const INCREMENT: &str = "wf_increment";
@@ -145,12 +126,17 @@ pub fn open(path: &Path) -> Result<Recording> {
         objects.iter().map(|(name, o)| (name.clone(), o.scales.clone())).collect();
     let has_times = objects.values().any(|o| o.start_time_s.is_some());
     let mut said: HashMap<String, f64> = HashMap::new();
-    let mut names: Vec<&String> = objects.keys().collect();
-    names.sort();
-    for name in names {
-        let (rates, odd) = objects[name].rates();
-        notes.extend(odd);
-        said.extend(units::agreed(&rates, &mut notes).map(|hz| (name.clone(), hz)));
+    let mut names: Vec<(&String, &mut Object)> = objects.iter_mut().collect();
+    names.sort_by_key(|(name, _)| *name);
+    for (name, object) in names {
+        if let Some(step) = object.increment {
+            // It has seconds, as far as it is shorter than one.
+            let unit = object.increment_unit.as_deref().filter(|unit| seconds(unit).is_some()).unwrap_or("s");
+            let unit =
+                Some(unit).filter(|unit| seconds(unit).is_some_and(|(_, second)| step * second <= 1.0));
+            object.rates.numbers(INCREMENT, INCREMENT, unit, &[step]);
+        }
+        said.extend(object.rates.clone().agreed(&mut notes).map(|hz| (name.clone(), hz)));
     }
     for path_in_file in known {
         let Some(object) = objects.remove(&path_in_file).filter(|o| o.count > 0 || !o.pieces.is_empty())
@@ -177,8 +163,7 @@ pub fn open(path: &Path) -> Result<Recording> {
                 continue;
             }
         };
-        let contradicts = object.rates().0.len() > 1 && !said.contains_key(&path_in_file);
-        let of_others = said.get(group).or(said.get("/")).filter(|_| !contradicts);
+        let of_others = said.get(group).or(said.get("/")).filter(|_| object.rates.said.is_empty());
         let rate_hz = said.get(&path_in_file).or(of_others).copied();
         // Where others have a time, one without it has none on their axis.
         let start_s = match object.start_time_s {
@@ -328,8 +313,8 @@ impl Metadata<'_> {
                         object.increment_unit = Some(value);
                     } else if property.starts_with("NI_") {
                         object.scales.insert(property, Property::Text(value));
-                    } else if let Some(said) = units::rate_in_words(&property, &value) {
-                        object.odd_rates.extend(said.map(|hz| object.rates.push((property, hz))).err());
+                    } else {
+                        object.rates.words(&property, &value);
                     }
                 } else {
                     let big_endian = self.big_endian;
@@ -342,13 +327,11 @@ impl Metadata<'_> {
                         object.start_offset_s = value;
                     } else if property == INCREMENT {
                         object.increment = value;
-                    } else if let Some(hz) = value.and_then(|x| units::rate_hz(&property, None, x)) {
-                        object.rates.push((property, hz));
-                    } else if let Some(why) = value.and_then(|x| units::odd_rate(&property, None, &[x])) {
-                        object.odd_rates.push(format!("`{property}` {why}"));
                     } else if let (Some(number), true) = (number, property.starts_with("NI_")) {
                         let value = Property::Number(number.decode(bytes));
                         object.scales.insert(property, value);
+                    } else if let Some(value) = value {
+                        object.rates.numbers(&property, &property, None, &[value]);
                     }
                 }
             }

@@ -6,8 +6,10 @@
 
 mod packets;
 
+use std::collections::BTreeMap;
+
 pub use crate::units::says_time;
-use crate::units::{self, DATES_S, NO_RATE, SAME_RATE, SLOWEST_S, Unit};
+use crate::units::{self, NO_RATE, SAME_RATE, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result, clock_columns};
 
 /// Samples that are looked at together.
@@ -217,7 +219,7 @@ pub(crate) fn is_clock(channel: &Channel) -> bool {
 /// Sample rates [Hz] that are numbers of their own, or columns of one number, each with its struct; those that
 /// contradict each other, or are none, are noted.
 fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Result<Vec<(String, f64)>> {
-    let mut said: Vec<(String, Vec<(String, f64)>)> = Vec::new();
+    let mut said: BTreeMap<&str, units::Rates> = BTreeMap::new();
     let says =
         |c: &&Channel| units::rate_hz(member(&c.name), c.unit.as_deref(), 1e-3).is_some() && !c.is_time;
     for channel in channels.iter().filter(says) {
@@ -225,18 +227,10 @@ fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Result<Vec<(Stri
         if values.iter().all(|x| Some(x) == values.first()) {
             values.truncate(1);
         }
-        let (name, unit) = (member(&channel.name), channel.unit.as_deref());
-        if let Some(why) = units::odd_rate(name, unit, &values) {
-            notes.push(format!("`{}` {why}", channel.name));
-        } else if let Some(hz) = values.first().and_then(|x| units::rate_hz(name, unit, *x)) {
-            let of = parent(&channel.name).to_owned();
-            match said.iter_mut().find(|(other, _)| *other == of) {
-                Some((_, all)) => all.push((channel.name.clone(), hz)),
-                None => said.push((of, vec![(channel.name.clone(), hz)])),
-            }
-        }
+        let rates = said.entry(parent(&channel.name)).or_default();
+        rates.numbers(&channel.name, member(&channel.name), channel.unit.as_deref(), &values);
     }
-    Ok(said.into_iter().filter_map(|(of, all)| Some((of, units::agreed(&all, notes)?))).collect())
+    Ok(said.into_iter().filter_map(|(of, rates)| Some((of.to_owned(), rates.agreed(notes)?))).collect())
 }
 
 /// Times of beginning [s] that are numbers of their own, each with the struct or the channel that it is of:
@@ -433,12 +427,9 @@ impl Course {
                 notes.push(format!("`{name}` counts days, as Excel and MATLAB do: {hz} Hz"));
                 return Some(hz);
             }
-            // Of all units only one makes a date of our time of it.
-            let epoch = [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")].into_iter();
-            let mut epoch = epoch.map(|(a_second, unit)| (a_second, unit, self.first.1 / a_second));
-            if let Some((a_second, unit, _)) = epoch.find(|(.., s)| DATES_S.contains(s)) {
-                let hz = units::rounded(a_second / step);
-                notes.push(format!("`{name}` counts {unit} from 1970 on: {hz} Hz"));
+            if let Some(second) = units::epoch_unit_s(self.first.1).filter(|second| *second < 1.0) {
+                let hz = units::rounded(1.0 / (step * second));
+                notes.push(format!("`{name}` counts steps of {second} s from 1970 on: {hz} Hz"));
                 return Some(hz);
             }
             let slow = step > SLOWEST_S * (1.0 + SAME_RATE);

@@ -203,29 +203,49 @@ pub(crate) fn odd_rate(name: &str, unit: Option<&str>, values: &[f64]) -> Option
 /// By which notes on numbers that say no rate end; where a rate is known otherwise they are of no interest.
 pub(crate) const NO_RATE: &str = ": no rate follows";
 
-/// The sample rate [Hz] that a text under the name of a rate or of a time step says, such as `48 kHz`, or why none
-/// follows; nothing under another name.
-pub(crate) fn rate_in_words(name: &str, text: &str) -> Option<Result<f64, String>> {
-    rate_hz(name, None, 1e-3)?;
-    csv::rate_hz(name, text).map(Ok).or_else(|| why_odd(name, text).map(Err))
-}
-
-/// Why no rate follows from such a text under such a name.
-pub(crate) fn why_odd(name: &str, text: &str) -> Option<String> {
+/// Why no rate follows from a text under the name of a rate or of a time step; nothing under another name.
+pub(crate) fn odd_words(name: &str, text: &str) -> Option<String> {
     rate_hz(name, None, 1e-3)?;
     let (name, short) = (name.trim(), text.trim().chars().take(40).collect::<String>());
     let value = short.parse().ok().and_then(|value| odd_rate(name, None, &[value]));
     Some(value.map_or(format!("`{name}` is `{short}`{NO_RATE}"), |why| format!("`{name}` {why}")))
 }
 
-/// The rate on which all numbers agree [Hz]; with a note on two that contradict each other, and no rate.
-pub(crate) fn agreed(said: &[(String, f64)], notes: &mut Vec<String>) -> Option<f64> {
-    let (name, first) = said.first()?;
-    let Some((other, hz)) = said.iter().find(|(_, hz)| (hz / first - 1.0).abs() > SAME_RATE) else {
-        return Some(*first);
-    };
-    notes.push(format!("`{name}` says {first} Hz and `{other}` says {hz} Hz: no rate is taken from them"));
-    None
+/// Sample rates that the properties of a file say [Hz], and why others that should say one do not.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Rates {
+    pub(crate) said: Vec<(String, f64)>,
+    pub(crate) odd: Vec<String>,
+}
+
+impl Rates {
+    /// Numbers under a name, which is `shown` in messages.
+    pub(crate) fn numbers(&mut self, shown: &str, name: &str, unit: Option<&str>, values: &[f64]) {
+        match (odd_rate(name, unit, values), values.first().and_then(|x| rate_hz(name, unit, *x))) {
+            (Some(why), _) => self.odd.push(format!("`{shown}` {why}")),
+            (None, hz) => self.said.extend(hz.map(|hz| (shown.to_owned(), hz))),
+        }
+    }
+
+    /// A text under a name, such as `48 kHz`.
+    pub(crate) fn words(&mut self, name: &str, text: &str) {
+        match csv::rate_hz(name, text) {
+            Some(hz) => self.said.push((name.to_owned(), hz)),
+            None => self.odd.extend(odd_words(name, text)),
+        }
+    }
+
+    /// The rate on which all agree, with notes on those that are odd, and on two that contradict each other.
+    pub(crate) fn agreed(self, notes: &mut Vec<String>) -> Option<f64> {
+        notes.extend(self.odd);
+        let (name, first) = self.said.first()?;
+        let other = self.said.iter().find(|(_, hz)| (hz / first - 1.0).abs() > SAME_RATE);
+        let note = |(other, hz): &(String, f64)| {
+            format!("`{name}` says {first} Hz and `{other}` says {hz} Hz: no rate is taken from them")
+        };
+        notes.extend(other.map(note));
+        other.is_none().then_some(*first)
+    }
 }
 
 /// Rates that differ by less than this part are one: clocks drift.
@@ -241,7 +261,7 @@ pub fn says_time(name: &str) -> bool {
 }
 
 /// Seconds from 1970 to 1990, and to 2060.
-pub(crate) const DATES_S: std::ops::Range<f64> = 6.3e8..2.84e9;
+const DATES_S: std::ops::Range<f64> = 6.3e8..2.84e9;
 
 /// The unit [s] in which a number is a date of our time from 1970 on; it is so in one unit only.
 pub(crate) fn epoch_unit_s(value: f64) -> Option<f64> {
@@ -298,11 +318,17 @@ mod tests {
         {
             assert_eq!(rate_hz(name, unit, value), None, "{name}");
         }
-        for text in ["12800", "12.8 kHz", "12.8k", " 12800 Hz"] {
-            assert_eq!(rate_in_words("sampling rate", text), Some(Ok(12_800.0)), "{text}");
+        for (name, text, says) in [
+            ("sampling rate", "12.8 kHz", Some(12_800.0)),
+            ("fs", " 12.8k", Some(12_800.0)),
+            ("fs", "nan", None),
+            ("load", "12800", None),
+        ] {
+            let (mut rates, mut notes) = (Rates::default(), Vec::new());
+            rates.words(name, text);
+            assert_eq!(rates.agreed(&mut notes), says, "{text}");
+            assert_eq!(notes.iter().any(|note| note == "`fs` is NaN: no rate follows"), text == "nan");
         }
-        assert_eq!(rate_in_words("fs", "nan"), Some(Err("`fs` is NaN: no rate follows".to_owned())));
-        assert_eq!(rate_in_words("load", "12800"), None);
     }
 
     #[test]

@@ -73,16 +73,17 @@ pub(crate) fn rate_hz(
     commas: bool,
     notes: &mut Vec<String>,
 ) -> Option<f64> {
-    let mut said = Vec::new();
+    let mut rates = units::Rates::default();
     for line in head {
         let Some((whole, key, rest)) = key_of(line) else { continue };
         match rate_of(line, dialect, commas) {
-            Some(hz) => said.push((whole.trim_end().to_owned(), hz)),
+            Some(hz) => rates.said.push((whole.trim_end().to_owned(), hz)),
             None if whole[key.len()..].starts_with(',') => {}
-            None => notes.extend(units::why_odd(key, rest.trim_start_matches([':', '=']))),
+            // What the table makes ambiguous says nothing.
+            None => rates.odd.extend(units::odd_words(key, rest.trim_start_matches([':', '=']))),
         }
     }
-    units::agreed(&said, notes)
+    rates.agreed(notes)
 }
 
 /// A line without the marks of a comment, and its parts before and behind the first separator.

@@ -492,13 +492,13 @@ fn issue_rows_of_another_clock_are_no_samples() {
 fn issue_rows_that_stand_twice_are_taken_once() {
     let desk = Scratch::create("rows-twice");
     let row = |n: usize| format!("{:.9},{:.6}", at(n).0, at(n).1);
-    let text = rows(|n| if n % 100 == 0 { format!("{}\n{}", row(n), row(n)) } else { row(n) });
-    let found = opened(&desk, "a.csv", ("time_s,acc_g\n".to_owned() + &text).as_bytes());
-    assert_eq!(
-        (sampled(&found, "acc_g").len, sampled(&found, "acc_g").rate_hz),
-        (COUNT as u64, Some(RATE_HZ))
-    );
-    notes(&found, &["rows stand twice: 41, the first of them row 2"]);
+    for (each, count) in [(100, 41), (1, COUNT)] {
+        let text = rows(|n| if n % each == 0 { format!("{}\n{}", row(n), row(n)) } else { row(n) });
+        let found = opened(&desk, "a.csv", ("time_s,acc_g\n".to_owned() + &text).as_bytes());
+        let acc = sampled(&found, "acc_g");
+        assert_eq!((acc.len, acc.rate_hz), (COUNT as u64, Some(RATE_HZ)));
+        notes(&found, &[&format!("rows stand twice: {count}, the first of them row 2")]);
+    }
 }
 
 /// Comments between rows, and the names once more, are no samples.
