@@ -134,7 +134,11 @@ pub fn open(path: &Path) -> Result<Recording> {
             let unit = object.increment_unit.as_deref().filter(|unit| seconds(unit).is_some()).unwrap_or("s");
             let unit =
                 Some(unit).filter(|unit| seconds(unit).is_some_and(|(_, second)| step * second <= 1.0));
-            object.rates.numbers(INCREMENT, INCREMENT, unit, &[step]);
+            // What was asked of a card is not what it takes; one second is what stands there where nobody says.
+            if step > 0.0 && step < 1.0 || object.rates.said.is_empty() {
+                object.rates.said.clear();
+                object.rates.numbers(INCREMENT, INCREMENT, unit, &[step]);
+            }
         }
         said.extend(object.rates.clone().agreed(&mut notes).map(|hz| (name.clone(), hz)));
     }

@@ -220,8 +220,9 @@ pub(crate) fn is_clock(channel: &Channel) -> bool {
 /// contradict each other, or are none, are noted.
 fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Result<Vec<(String, f64)>> {
     let mut said: BTreeMap<&str, units::Rates> = BTreeMap::new();
-    let says =
-        |c: &&Channel| units::rate_hz(member(&c.name), c.unit.as_deref(), 1e-3).is_some() && !c.is_time;
+    let says = |c: &&Channel| {
+        c.len < LEAST as u64 && units::rate_hz(member(&c.name), c.unit.as_deref(), 1e-3).is_some()
+    };
     for channel in channels.iter().filter(says) {
         let mut values = channel.read()?;
         if values.iter().all(|x| Some(x) == values.first()) {

@@ -229,7 +229,11 @@ impl Rates {
 
     /// A text under a name, such as `48 kHz`.
     pub(crate) fn words(&mut self, name: &str, text: &str) {
-        match csv::rate_hz(name, text) {
+        // Of two numbers the second may qualify the first: `25.6 kHz, decimated by 2`.
+        let is_number = |c: char| c.is_ascii_digit() || ".,+-eE".contains(c);
+        let behind = text.trim_start().trim_start_matches(is_number);
+        let alone = !behind.contains(|c: char| c.is_ascii_digit());
+        match csv::rate_hz(name, text).filter(|_| alone) {
             Some(hz) => self.said.push((name.to_owned(), hz)),
             None => self.odd.extend(odd_words(name, text)),
         }

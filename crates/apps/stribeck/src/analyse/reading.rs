@@ -389,7 +389,14 @@ fn speed_in_file(recording: &Recording, notes: &mut Vec<String>) -> Result<Vec<(
         let (name, value) =
             (channel.name.to_lowercase(), channel.read()?.first().copied().unwrap_or(f64::NAN));
         let of_name = name.contains("rpm").then_some((1.0, false));
-        let Some((factor, _)) = tacho::turns_a_minute(channel).or(of_name) else {
+        // Neither a line of the mains nor what a filter or the sampling has.
+        let is_speed =
+            ["rpm", "speed", "shaft", "omega", "rotat", "drehzahl"].iter().any(|word| name.contains(word))
+                && !["line", "resol", "std", "max", "toler", "_fs", "cutoff", "sampl"]
+                    .iter()
+                    .any(|word| name.contains(word));
+        let turns = tacho::turns_a_minute(channel).or(of_name).filter(|_| is_speed);
+        let Some((factor, _)) = turns else {
             if ["speed", "drehzahl", "omega"].contains(&name.rsplit('.').next().unwrap_or(&name)) {
                 notes.push(format!(
                     "`{}` is {value} and does not say its unit: no speed follows",
@@ -398,7 +405,7 @@ fn speed_in_file(recording: &Recording, notes: &mut Vec<String>) -> Result<Vec<(
             }
             continue;
         };
-        let rpm = factor * value;
+        let rpm = factor * value.abs();
         if !(rpm.is_finite() && rpm > 0.0) {
             continue;
         }

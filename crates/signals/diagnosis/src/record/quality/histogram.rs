@@ -93,33 +93,40 @@ impl Histogram {
         let (first, last) = (self.sorted[0], self.sorted[self.sorted.len() - 1]);
         let count =
             |of: f64| self.sorted.partition_point(|x| *x <= of) - self.sorted.partition_point(|x| *x < of);
-        let is_mark = |at: &usize| {
-            let (value, runs) = self.values[*at];
-            let beside = self.values[at.saturating_sub(2)..(at + 3).min(self.values.len())].iter();
-            // The density of a signal is smooth.
-            let peaks = beside.filter(|of| of.0 != value).all(|of| runs > 4 * of.1 || of.1 > runs);
+        // How far a value lies from all others, over how far these lie from each other.
+        let apart = |value: f64| {
             let others = self.sorted.len() - count(value);
             let (lowest, highest) = match value {
                 _ if value == first => (self.sorted[self.sorted.len() - others], last),
                 _ if value == last => (first, self.sorted[others - 1]),
                 _ => (first, last),
             };
-            // Farther from the others than these from each other.
-            let apart = (lowest - value).max(value - highest) / (highest - lowest);
+            (lowest - value).max(value - highest) / (highest - lowest)
+        };
+        let at_rail = |value: f64| {
             let at_end = value == first || value == last;
-            let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
+            at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0)
+        };
+        let is_mark = |at: &usize| {
+            let (value, runs) = self.values[*at];
+            let (apart, at_rail) = (apart(value), at_rail(value));
+            let beside = self.values[at.saturating_sub(2)..(at + 3).min(self.values.len())].iter();
+            // The density of a signal is smooth.
+            let peaks = beside.filter(|of| of.0 != value).all(|of| runs > 4 * of.1 || of.1 > runs);
             let is_often =
                 peaks && runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
             // What fills gaps stands in a few long runs.
             let is_scattered = runs > 1 && 2 * runs > count(value);
-            is_scattered && apart > FAR
-                || runs >= OFTEN && apart > 1.0
+            // A few impacts reach the end of the converter.
+            let counts = self.frequent[..MARKS].contains(at) || 2000 * runs > self.sorted.len();
+            counts && (is_scattered && apart > FAR || runs >= OFTEN && apart > 1.0)
                 || is_often && (apart > 0.1 || !at_rail)
         };
         // Marks that lie apart are the first or the last value, however seldom.
         let ends = [0, self.values.len() - 1];
         let frequent = self.frequent.iter().take(MARKS).filter(|at| !ends.contains(at));
         let often = frequent.chain(&ends).filter(|at| is_mark(at)).map(|at| self.values[*at].0);
+        let even = even.into_iter().filter(|value| apart(*value) > 0.1 || !at_rail(*value));
         let mut marks: Vec<f64> = often.chain(even).collect();
         marks.sort_by(f64::total_cmp);
         marks.dedup();
@@ -181,10 +188,10 @@ impl Histogram {
         // Longer spans say it to more digits than one step of rounded numbers does.
         for at in (0..).map(|n| 1 << n).take_while(|at| *at < 2 * last) {
             let span = self.sorted[last.min(at)] - first;
-            step = if span > 0.0 { span / (span / step).round() } else { step };
+            step = if span > 0.5 * step { span / (span / step).round() } else { step };
         }
         let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.05;
-        let in_steps = self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole);
+        let in_steps = step.is_finite() && self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole);
         // Whole numbers of which few are there have larger steps than one.
         in_steps.then_some(step).or_else(|| self.sorted.iter().all(|x| x.fract() == 0.0).then_some(1.0))
     }
